@@ -31,7 +31,10 @@ TREE: dict[str, list[Case]] = {
         Case("blocks that slide or collapse one by one", ("dem", "dem-domain", "dem-parameters"), "dem"),
         Case("repeated or harmonic shaking", ("harmonic-map", "resonance"), "rocking"),
     ],
-    "How probable is collapse?": [Case("many motions, fragility, annual rate", ("fragility",), "rocking-statistics")],
+    "How probable is collapse?": [
+        Case("many motions, fragility, annual rate", ("fragility",), "rocking-statistics"),
+        Case("drums, facade, corner, vault of many blocks", ("dem-fragility",), "dem"),
+    ],
     "Where does it crack, and what load does it carry?": [
         Case("one wall in its plane", ("sla",), "sla"),
         Case("building of walls and floors, vault, dome", ("pushover",), "buildings"),

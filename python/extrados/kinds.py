@@ -249,6 +249,9 @@ ANALYSES: dict[str, AnalysisKind] = {
     "pushover": _analysis("shell", "Pushover", "pushover", "shell:draw_pushover", "pushover", "building/two-rooms", ("push-x", "push-y")),
     "dem": _analysis("dem", "Dem", "driver", "dem:draw_dem", "dem", "dem/oppenheim", ("dem",)),
     "dem-domain": _analysis("dem", "DemDomain", "dem_domain", "dem:draw_domain", "dem_domain", "dem/domain"),
+    "dem-fragility": _analysis(
+        "dem", "DemFragility", "fragility", "statistics:draw_fragility", "fragility", "dem/fragility", results="statistics:DemFragility"
+    ),
     "modes": _analysis("frame", "Modes", "block_modes", "frame:draw_modes", "others", "arch/modes"),
     "frame-modes": _analysis("frame", "FrameModes", "modes", "frame:draw_modes", "others", "frame/two-rooms"),
     "frame-pushover": _analysis("frame", "FramePushover", "pushover", "frame:draw_pushover", "others", "frame/two-rooms", ("frame",)),

@@ -119,7 +119,7 @@ def test_overlapping_blocks_are_refused_by_name(monkeypatch: pytest.MonkeyPatch)
         )
     )
     monkeypatch.setattr(Column, "assembly", lambda *_: column)
-    model = make_model(context, Dem(kind="dem"))
+    model = make_model(context.building, Dem(kind="dem"))
     with pytest.raises(Exception, match="drum 1 and drum 2 overlap"):
         dem_model.checked(dem.run(model.bodies(), dem.Options(1.0)), model)
 
@@ -145,7 +145,7 @@ def test_failure_curve_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     )
     options = deck.analyses[0]
     first = Context(deck, out=tmp_path / "run")
-    model = make_model(first, options)
+    model = make_model(first.building, options)
     asked = [(0, 0.6 * 9.80665, 0.2), (0, 0.6 * 9.80665, 0.8)]
     curves = [dem_domain.Curve("as given", model.values)]
     search = dem_domain.Search(first, options, model, curves, 4)

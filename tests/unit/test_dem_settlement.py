@@ -171,7 +171,7 @@ STANDING = {
 @pytest.mark.parametrize("name", STANDING)
 def test_what_stands_settles_as_its_closed_joints_give(name) -> None:
     deck = read_text(f'[structure]\n{STANDING[name]}\n[joints]\nfriction = 2.0\n[[analysis]]\nkind = "dem"\n'.encode())
-    model = make_model(Context(deck), deck.analyses[0])
+    model = make_model(Context(deck).building, deck.analyses[0])
     closed, gaps = closed_settlement(model, model.values)
     options = dem.Options(end_time=1e-6, output_step=1e-3, settlement=farthest_settlement(model))
     with dem.Model(model.bodies(), options) as elements, as_motion_set([dem_run.STILL]) as motions:

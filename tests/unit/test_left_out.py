@@ -82,8 +82,8 @@ HOUSE = {
         for n, s, e in (("a", [0, 0], [3, 0]), ("b", [3, 0], [3, 2]), ("c", [3, 2], [0, 2]), ("d", [0, 2], [0, 0]))
     ],
 }
-#: Kinds that take long, or need files; `assess` asks others, and dem-domain and fragility run `dem` and `rocking` many times
-LONG = {"survey", "fragility", "dem-domain", "assess"}
+#: Kinds that take long, or need files; `assess` asks others, and dem-domain, dem-fragility and fragility run `dem` and `rocking` many times
+LONG = {"survey", "fragility", "dem-domain", "dem-fragility", "assess"}
 DECKS = {
     "tilt": (ARCH, None, {}),
     "thrust": (ARCH, None, {}),

@@ -39,6 +39,7 @@ USERS = {
     "rocking-spectrum": (BLOCK, "periods = [1.0, 2.0]"),
     "code-checks": (BLOCK, ""),
     "dem": (BLOCK, "end_time = 0.5"),
+    "dem-fragility": (BLOCK, 'levels = ["0.01 g"]\ncount = 1\nsettle = 0.0\nsolver = "nonsmooth"'),
     "shake-table": ("", ""),
     "failure-curves": (BLOCK, ""),
     "assess": (BLOCK, "budget = 5.0"),

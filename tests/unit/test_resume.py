@@ -73,6 +73,18 @@ durations = [0.2, 0.4, 0.8]
 accuracy = 0.1
 vary_damping = [0.5]
 """,
+    "dem-fragility": BLOCK
+    + PULSE
+    + """
+[[analysis]]
+kind = "dem-fragility"
+solver = "nonsmooth"
+intensity = "scale"
+levels = [0.5, 1.0, 1.5]
+count = 4
+settle = 0.5
+uncertain = { width = 0.1, friction = 0.1 }
+""",
     "dem variations and friction": BLOCK
     + PULSE
     + """

@@ -215,3 +215,15 @@ def test_branches_to_the_supports_are_compared_too(lines, leaves) -> None:
     """Six branches of a barrel under its greatest horizontal load pass beside its haunch."""
     run = extrados.run({"structure": BARREL, "analysis": {"kind": "thrust-network", "lines": lines}})
     assert (run.analyses[0]["results"]["horizontal_outside_m"] > 0.05) == leaves
+
+
+def test_oculus_is_free_and_other_openings_name_the_cure() -> None:
+    """The networks around an oculus lie within the thrusts of the blocks; a grid across it is refused."""
+    deck = {"structure": {**DOME, "thickness": 0.6, "oculus": 30.0}}
+    asked = [{"kind": "thrust-network", "lines": 4, "meridians": 8}, {"kind": "thrust-network", "form": "grid", "lines": 4}]
+    run = extrados.run({**deck, "analysis": [*asked, {"kind": "thrust", "section": [{"name": "foot", "joints": ["ground"]}]}]})
+    r, blocks = run["thrust-network"], run["thrust"]["sections"][0]
+    assert blocks["least_N"] < r["least_thrust_N"] < r["greatest_thrust_N"] < blocks["greatest_N"]
+    refused = run.analyses[1]
+    assert refused["status"] == "refused"
+    assert "use `thrust`" in refused["reason"]

@@ -59,7 +59,7 @@ def begin_fall(context: Context, building: Building, made: Picture) -> Iterator[
     options = Dem(kind="dem", solver="nonsmooth", floor=floor, perturbed=False)
     if wrong := complaints(context, options, building):
         raise Refused(wrong[0])
-    model = make_model(context, options)
+    model = make_model(context.building, options)
     return _pieces(model, made.words["gamma"], _start(made, len(model.rigid.mass)))
 
 

@@ -137,6 +137,11 @@ class BlocksRun(KindResults):
     solver: Literal["compliant", "nonsmooth"] = fact(
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )
+    edge_stress_at_rest_Pa: float | None = maybe(
+        "greatest compressive stress at an edge or corner of a joint at rest under self-weight: linear pressure without tension; null if an "
+        "edge alone carries",
+        "Pa",
+    )
     ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each of its segments")
     convergence: Convergence | None = maybe("of rigid contacts")
     joint_stiffness_min_Pa_per_m: float | None = fact("least normal stiffness of the joints", "Pa/m")

@@ -1,5 +1,7 @@
 """Results of the rocking statistics: fragility, resonance, rocking-spectrum, harmonic-map."""
 
+from typing import Literal
+
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.rocking import Conditions, RockingOutcome
 from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
@@ -166,22 +168,14 @@ class RuleShares(ResultModel):
     collapse_probability: list[float] = fact("share of the motions that cause collapse, at each level of intensity")
 
 
-class OverLevels(Annual):
-    """fragility: one structure under the same motions scaled to levels of an intensity; lists hold one value a level."""
+class LevelShares(Annual):
+    """Shares of one structure under the same motions scaled to levels of an intensity; lists hold one value a level."""
 
     intensity: str = fact("intensity measure to which motions are scaled; levels and medians are in its unit")
     intensity_unit: str = fact("unit of the levels and of the medians")
     levels: list[float] = fact("the levels, ascending, in intensity_unit")
     motions: int = fact("number of motions")
-    conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all runs")
-    handed_over: int = maybe(
-        "number of runs that were continued with rigid contacts, because joints slide or hinges form outside the rocking mechanism",
-        source="Moreau 1988",
-    )
     sliding_share: list[float | None] = fact("share of the motions in which blocks slide, at each level of intensity")
-    hinges_elsewhere_share: list[float | None] = fact(
-        "share of the motions for which hinges form outside the rocking mechanism, at each level of intensity"
-    )
     count: list[int] = fact("number of motions with a result, at each level of intensity")
     failed: int = fact("runs without a result")
     collapsed: list[int] = fact("number of motions that cause collapse, at each level of intensity")
@@ -194,31 +188,8 @@ class OverLevels(Annual):
     uplift_confidence_interval: list[list[float]] = fact(
         "95 % confidence intervals (Wilson score) of the share of motions under which rocking starts", source="Wilson 1927"
     )
-    mean_peak_rotation_ratio: list[float | None] = fact(
-        "mean of the peak rotation divided by the critical rotation, at each level; a motion that causes collapse counts as 1"
-    )
-    deviation_peak_rotation_ratio: list[float | None] = fact(
-        "standard deviation of the peak rotation divided by the critical rotation, at each level"
-    )
-    median_peak_rotation_ratio: list[float | None] = fact(
-        "median of the peak rotation divided by the critical rotation, at each level; a motion that causes collapse counts as 1"
-    )
-    peak_rotation_ratio_16: list[float | None] = fact(
-        "16th percentile of the peak rotation divided by the critical rotation, at each level; null if this percentile is collapse",
-        source="Vamvatsikos and Cornell 2002",
-    )
-    peak_rotation_ratio_50: list[float | None] = fact(
-        "median of the peak rotation divided by the critical rotation, at each level; null if the median is collapse"
-    )
-    peak_rotation_ratio_84: list[float | None] = fact(
-        "84th percentile of the peak rotation divided by the critical rotation, at each level; null if this percentile is collapse"
-    )
     median_pga_g: list[float | None] = fact("median peak acceleration of the scaled motions, at each level of intensity", "g")
     confidence: float = fact("level of all intervals")
-    restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
-    uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    critical_rotation_rad: float = fact("critical rotation, beyond which gravity causes collapse", "rad")
-    initial_rotation_ratio: float = fact("rotation at the start, divided by the critical rotation")
     median: float | None = maybe(
         "median of the lognormal curve of the probability that a motion of a given level causes collapse, in `intensity_unit`",
         source="Baker 2015",
@@ -263,24 +234,13 @@ class OverLevels(Annual):
     overturning_given_uplift_goodness_p_value: float | None = maybe(
         "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
     )
-    collapse_by_rule: list[RuleShares] = maybe(
-        "probability of collapse by each impact rule; given if the coefficients of restitution c_v of "
-        "the rules differ by a factor of more than 1.3"
-    )
-    rule_band: float = maybe("greatest difference, at one level, between the probabilities of collapse by two impact rules")
     motions_that_collapse: int = fact("number of motions that cause collapse at one or more levels")
     resurrections: int = fact("number of motions that cause collapse at one level but not at a higher level")
 
-    def judged(self, demand: Demand) -> Verdict:
+    def judged_over_levels(self, violated: list[str]) -> Verdict:
         """The fitted median is the capacity; levels are questions, not a demand."""
         if not any(self.count):
             return judge("No motion could be run.", outcome="open")
-        violated = list(self.conditions.violated)
-        if self.rule_band:
-            violated.append(
-                "The outcome depends on the impact rule: the probabilities of collapse at one level differ by up "
-                f"to {100.0 * self.rule_band:.3g} %."
-            )
         if (by_rate := self.judged_by_rate(violated)) is not None:
             return by_rate
         unit = f" {self.intensity_unit}" if self.intensity_unit else ""
@@ -303,6 +263,87 @@ class OverLevels(Annual):
             "not-applicable",
             violated=violated,
         )
+
+
+class OverLevels(LevelShares):
+    """fragility: one structure under the same motions scaled to levels of an intensity; lists hold one value a level."""
+
+    conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all runs")
+    handed_over: int = maybe(
+        "number of runs that were continued with rigid contacts, because joints slide or hinges form outside the rocking mechanism",
+        source="Moreau 1988",
+    )
+    hinges_elsewhere_share: list[float | None] = fact(
+        "share of the motions for which hinges form outside the rocking mechanism, at each level of intensity"
+    )
+    mean_peak_rotation_ratio: list[float | None] = fact(
+        "mean of the peak rotation divided by the critical rotation, at each level; a motion that causes collapse counts as 1"
+    )
+    deviation_peak_rotation_ratio: list[float | None] = fact(
+        "standard deviation of the peak rotation divided by the critical rotation, at each level"
+    )
+    median_peak_rotation_ratio: list[float | None] = fact(
+        "median of the peak rotation divided by the critical rotation, at each level; a motion that causes collapse counts as 1"
+    )
+    peak_rotation_ratio_16: list[float | None] = fact(
+        "16th percentile of the peak rotation divided by the critical rotation, at each level; null if this percentile is collapse",
+        source="Vamvatsikos and Cornell 2002",
+    )
+    peak_rotation_ratio_50: list[float | None] = fact(
+        "median of the peak rotation divided by the critical rotation, at each level; null if the median is collapse"
+    )
+    peak_rotation_ratio_84: list[float | None] = fact(
+        "84th percentile of the peak rotation divided by the critical rotation, at each level; null if this percentile is collapse"
+    )
+    restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
+    uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
+    critical_rotation_rad: float = fact("critical rotation, beyond which gravity causes collapse", "rad")
+    initial_rotation_ratio: float = fact("rotation at the start, divided by the critical rotation")
+    collapse_by_rule: list[RuleShares] = maybe(
+        "probability of collapse by each impact rule; given if the coefficients of restitution c_v of "
+        "the rules differ by a factor of more than 1.3"
+    )
+    rule_band: float = maybe("greatest difference, at one level, between the probabilities of collapse by two impact rules")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The fitted median is the capacity; levels are questions, not a demand."""
+        violated = list(self.conditions.violated)
+        if self.rule_band:
+            violated.append(
+                "The outcome depends on the impact rule: the probabilities of collapse at one level differ by up "
+                f"to {100.0 * self.rule_band:.3g} %."
+            )
+        return self.judged_over_levels(violated)
+
+
+class DemFragility(LevelShares):
+    """dem-fragility: blocks under many motions, at levels of an intensity or in several sizes; lists hold one value a level."""
+
+    solver: Literal["compliant", "nonsmooth"] = fact("model of the joints")
+    direction_deg: float | None = maybe("for solids: direction of the motions in plan, as an angle from +x towards +y", "deg")
+    uncertain: list[str] = fact("uncertain values; each motion acts on a building of its own")
+    censored: list[int] = fact("runs without a result because blocks still move at their end, at each level; included in `failed`")
+    collapse_probability_bounds: list[list[float | None]] = fact(
+        "share of the motions that cause collapse if no censored run ends with collapse, and if all do, at each level"
+    )
+    unstable: int = fact("sampled buildings that collapse under their own weight; they count as collapsed")
+    mean_peak_displacement_ratio: list[float | None] = fact(
+        "mean ratio of the peak displacement of a block to the displacement that counts as collapse, at each level; collapse counts as 1"
+    )
+    deviation_peak_displacement_ratio: list[float | None] = fact("standard deviation of this ratio, at each level")
+    median_peak_displacement_ratio: list[float | None] = fact("median of this ratio, at each level; collapse counts as 1")
+    peak_displacement_ratio_16: list[float | None] = fact(
+        "16th percentile of this ratio, at each level; null if this percentile is collapse", source="Vamvatsikos and Cornell 2002"
+    )
+    peak_displacement_ratio_50: list[float | None] = fact("median of this ratio, at each level; null if the median is collapse")
+    peak_displacement_ratio_84: list[float | None] = fact(
+        "84th percentile of this ratio, at each level; null if this percentile is collapse"
+    )
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The fitted median is the capacity; censored runs are a doubt."""
+        many = sum(self.censored)
+        return self.judged_over_levels([f"Blocks still move at the end of {many} runs, which have no outcome."] if many else [])
 
 
 class OverDurations(KindResults):

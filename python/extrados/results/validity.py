@@ -148,6 +148,11 @@ DemDomain = Validity(
     "The curve gives the shortest tried duration that causes collapse. Safe regions beyond the curve are not reliable, and a duration "
     "between two tried ones may cause collapse. The limits of validity of the discrete-element analysis apply.",
 )
+DemFragility = Validity(
+    "The motions of the set act on blocks that move independently, as in discrete elements, each motion on a building of its own values.",
+    "The probability is that of the set of motions and of the given uncertainties. Runs whose blocks still move at the end have no "
+    "outcome. The limits of discrete elements apply.",
+)
 DemParameters = Validity(
     "Empirical rules give joint stiffness, impact frequency and damping. No motion is run.",
     "The values are starting values for discrete-element analyses, not properties of the building: vary them, and compare the outcomes.",

@@ -4,4 +4,4 @@
 GRAVITY = 9.80665
 
 #: What analyses blocks in space, as refusals of structures without a plane section state it
-IN_SPACE = "limit analysis (`tilt`, `thrust`, `sweep`, `survey`, `imperfections`), `dem` and `dem-domain` can analyse its solids in space"
+IN_SPACE = "limit analysis (`tilt`, `thrust`, `sweep`, `survey`, `imperfections`), `dem`, `dem-domain` and `dem-fragility` can analyse its solids in space"

@@ -66,6 +66,10 @@ def _window(run: Stored, name: str, picks: list[int]) -> tuple[float, float, flo
     return low[0] - room, high[0] + room, low[1] - room, high[1] + room
 
 
+#: Of the window: length of the greatest force in a joint
+THRUST_LENGTH = 0.15
+
+
 class Scene:
     """What stays the same from one picture of a run to the next."""
 
@@ -78,6 +82,9 @@ class Scene:
         self.tie_block: np.ndarray = get["tie_block"].numbers if "tie_block" in get else np.empty((0, 2), int)
         self.tie_point: np.ndarray = get["tie_point"].numbers if "tie_point" in get else np.empty((0, 2, 2))
         self.window = _window(run, name, picks)
+        self.thrust_force = get["thrust_force"].numbers if "thrust_force" in get else np.zeros((0, 0, 2))
+        self.thrust_place = get["thrust_place"].numbers if "thrust_place" in get else np.zeros((0, 0, 2))
+        self.longest = float(np.linalg.norm(self.thrust_force[picks], axis=2).max(initial=0.0)) if self.thrust_force.size else 0.0
 
     @property
     def aspect(self) -> float:
@@ -102,6 +109,16 @@ class Scene:
             ends[i, end] = moved(ends[i, end][None], self.centroid[block], self.place[k, block])[0]
         return ends
 
+    def thrust(self, k: int) -> np.ndarray:
+        """Forces in the joints at output k as segments (n, 2, 2) through their places; their lengths are in proportion."""
+        if self.longest <= 0.0:
+            return np.empty((0, 2, 2))
+        left, right, bottom, top = self.window
+        half = 0.5 * THRUST_LENGTH * max(right - left, top - bottom) / self.longest * self.thrust_force[k]
+        there = np.isfinite(self.thrust_place[k]).all(axis=1)
+        place = self.thrust_place[k][there]
+        return np.stack([place - half[there], place + half[there]], axis=1)
+
     def draw(self, ax: Axes, k: int, arrows: float) -> None:
         """Blocks at output k, hinges, and velocities as arrows (`arrows`: metres per m/s)."""
         place, rate = self.place[k], self.rate[k]
@@ -111,6 +128,7 @@ class Scene:
         shapes = [moved(o, c, p) for o, c, p in zip(self.blocks, self.centroid, place, strict=True)]
         ax.add_collection(PolyCollection(shapes, facecolor=style.STONE, edgecolor=style.EDGE, linewidth=0.7))
         ax.add_collection(LineCollection(list(self.ties(k)), color=style.THRUST, linewidth=1.6, zorder=5))
+        ax.add_collection(LineCollection(list(self.thrust(k)), color=style.HINGE, linewidth=1.4, zorder=4))
         points = self.hinges(k)
         if len(points):
             style.draw_hinges(ax, points)
@@ -190,7 +208,8 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.axis("off")
         saved = style.save(fig, folder, f"{name}-snapshots")
     scale = f" (longest arrow {fastest:.3g} m/s)" if arrows else ""
-    return saved, f"Displaced structure, hinges (circles) and velocities of the blocks{scale}."
+    forces = f" Lines: forces in the joints through their places; the longest is {scene.longest / 1e3:.3g} kN." if scene.longest else ""
+    return saved, f"Displaced structure, hinges (circles) and velocities of the blocks{scale}.{forces}"
 
 
 def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -422,6 +441,8 @@ def film_dem(run: Stored, name: str, folder: Path) -> None:
             ax.fill(*support.T, facecolor="#d7d3cb", edgecolor="none", zorder=0)
         stones = Stones(run, name, ax)
         (hinges,) = ax.plot([], [], "o", color=style.HINGE, markersize=6, markerfacecolor="white", markeredgewidth=1.6)
+        thrust = LineCollection([], color=style.HINGE, linewidth=1.6, zorder=4)
+        ax.add_collection(thrust, autolim=False)
         left, right, bottom, top = scene.window
         ax.set_xlim(left, right)
         ax.set_ylim(bottom, top)
@@ -430,5 +451,6 @@ def film_dem(run: Stored, name: str, folder: Path) -> None:
         def show(k: int) -> None:
             stones.place(scene.place[k])
             hinges.set_data(*scene.hinges(k).T)
+            thrust.set_segments(list(scene.thrust(k)))
 
-        film.history(ax, folder / "figures" / f"{name}.{kind}", time, speed, show, cursors, [stones.drawn, hinges])
+        film.history(ax, folder / "figures" / f"{name}.{kind}", time, speed, show, cursors, [stones.drawn, hinges, thrust])

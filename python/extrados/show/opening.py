@@ -44,6 +44,7 @@ TITLES = {
     "pushover": "Pushover",
     "dem": "Discrete elements",
     "dem-domain": "Failure domain of discrete elements",
+    "dem-fragility": "Fragility by discrete elements",
     "assess": "Comparison of the strategies",
     "strengthen": "Strengthening",
     "dem-parameters": "Parameters of discrete elements",

@@ -38,6 +38,10 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     return found
 
 
+#: Of the picture: length of the greatest force in a contact
+THRUST_LENGTH = 0.15
+
+
 class _Stage:
     """What stays the same from one picture of a run to the next; colours tell how far a stone has gone."""
 
@@ -57,6 +61,9 @@ class _Stage:
         far = np.linalg.norm(self.pose[:, :, :3] - self.pose[0, :, :3], axis=2)
         self.share = far / max(float(far[picks].max()), 1e-12) if far.max() > 1e-4 * size else 0.0 * far
         self.farthest = float(far[picks].max())
+        self.force: np.ndarray = get["thrust_force"].numbers if "thrust_force" in get else np.zeros((len(self.time), 0, 3))
+        self.place: np.ndarray = get["thrust_place"].numbers if "thrust_place" in get else np.zeros((len(self.time), 0, 3))
+        self.longest = float(np.linalg.norm(self.force[picks], axis=2).max(initial=0.0))
 
     @property
     def aspect(self) -> float:
@@ -78,9 +85,25 @@ class _Stage:
         ends: np.ndarray = np.where(self.tie_block[..., None] < 0, self.tie_point, moved) @ VIEW.axes[:2].T
         return ends
 
+    def thrust(self, k: int) -> np.ndarray:
+        """Forces in the contacts at output k as segments (n, 2, 2) of the picture through their places; lengths are in proportion."""
+        left, right, low, high = self.frame
+        there = np.isfinite(self.place[k]).all(axis=1)
+        half = 0.5 * THRUST_LENGTH * max(right - left, high - low) / max(self.longest, 1e-300) * self.force[k][there]
+        ends: np.ndarray = np.stack([self.place[k][there] - half, self.place[k][there] + half], axis=1) @ VIEW.axes[:2].T
+        return ends
+
+    def lines(self, k: int) -> list[np.ndarray]:
+        """Ties, dampers and forces at output k."""
+        return [*self.segments(k), *self.thrust(k)]
+
+    def colours(self, k: int) -> list[str]:
+        """Their colours."""
+        return [TIE] * len(self.segments(k)) + [style.HINGE] * len(self.thrust(k))
+
     def show(self, ax: Axes, k: int, push: float | None) -> None:
         scene.show(ax, self.image(k), self.frame)
-        ax.add_collection(LineCollection(list(self.segments(k)), colors=TIE, linewidths=1.6, zorder=3), autolim=False)
+        ax.add_collection(LineCollection(self.lines(k), colors=self.colours(k), linewidths=1.6, zorder=3), autolim=False)
         scene.ground(ax, self.still.vertices, VIEW)
         scene.compass(ax, VIEW, push)
 
@@ -102,7 +125,8 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             legend(fig, list(axes[: rows * columns]), stage.farthest)
         saved = style.save(fig, folder, f"{name}-snapshots")
     what = f"Collapse at {tilt.collapse_acceleration_g:.4f} g" if tilt is not None else "Displaced stones"
-    return saved, f"{what}; colours show the displacement of each block (greatest: {stage.farthest:.3g} m)."
+    forces = f" Lines: forces in the contacts through their places; the longest is {stage.longest / 1e3:.3g} kN." if stage.longest else ""
+    return saved, f"{what}; colours show the displacement of each block (greatest: {stage.farthest:.3g} m).{forces}"
 
 
 def legend(fig: Figure, axes: list[Axes], farthest: float) -> None:
@@ -190,7 +214,8 @@ def _film(run: Stored, name: str, folder: Path) -> None:
 
         def show(k: int) -> None:
             drawn.set_data(stage.image(int(frames[k])))
-            lines.set_segments(list(stage.segments(int(frames[k]))))
+            lines.set_segments(stage.lines(int(frames[k])))
+            lines.set_color(stage.colours(int(frames[k])))
             title.set_text(f"{time[frames[k]]:.2f} s")
 
         path = folder / "figures" / f"{name}.{kind}"

@@ -32,6 +32,7 @@ METHODS = {
     "harmonic-map": (HOUSNER,),
     "dem": (CUNDALL, MOREAU),
     "dem-domain": (CUNDALL,),
+    "dem-fragility": (CUNDALL, MOREAU),
     "sla": (ROTS,),
     "pushover": (ROTS,),
     "frame-pushover": (FAJFAR,),

@@ -6,7 +6,7 @@ import numpy as np
 
 from extrados.results.codes import Checked
 from extrados.results.rocking import COLLAPSE, RECOVERY, SLID
-from extrados.results.statistics import Ensemble, HarmonicMap, OverDurations, OverLevels, Resonance, RockingSpectrum
+from extrados.results.statistics import DemFragility, Ensemble, HarmonicMap, LevelShares, OverDurations, Resonance, RockingSpectrum
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import style
@@ -77,14 +77,14 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         )
 
 
-def _ensemble(run: Stored, name: str) -> Ensemble | OverLevels:
+def _ensemble(run: Stored, name: str) -> Ensemble | LevelShares:
     """Results of a fragility, at one intensity of each motion or at several levels."""
     found = run[name]
-    assert isinstance(found, Ensemble | OverLevels)
+    assert isinstance(found, Ensemble | LevelShares)
     return found
 
 
-def _axis(r: Ensemble | OverLevels) -> str:
+def _axis(r: Ensemble | LevelShares) -> str:
     """What an axis of intensities says."""
     return f"{r.intensity} [{r.intensity_unit}]" if r.intensity_unit else r.intensity
 
@@ -217,19 +217,29 @@ def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         )
 
 
+def _risen(r: LevelShares) -> str:
+    """What counts as rocking: blocks have joints, a mechanism has one."""
+    return "rocking of a joint, or collapse" if isinstance(r, DemFragility) else "uplift"
+
+
 def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
-    r, arrays = run.results_of(name, OverLevels), run.arrays[name]
+    r, arrays = run.results_of(name, LevelShares), run.arrays[name]
     level = run.array(name, "stripe_level")
     unit = arrays["stripe_level"].unit
-    grid = run.array(name, "grid")
+    grid = run.array(name, "grid") if "grid" in arrays else np.zeros(0)
     with style.figure(6.5, 4.2) as (fig, (ax,)):
         for key, lower, upper, color, label in (
-            ("stripe_uplift_probability", "stripe_uplift_lower", "stripe_uplift_upper", style.GROUND, "uplift"),
+            ("stripe_uplift_probability", "stripe_uplift_lower", "stripe_uplift_upper", style.GROUND, _risen(r)),
             ("stripe_collapse_probability", "stripe_lower", "stripe_upper", style.THRUST, "collapse"),
         ):
             value, low, high = (run.array(name, k) for k in (key, lower, upper))
             bars = np.maximum([value - low, high - value], 0.0)
             ax.errorbar(level, value, yerr=bars, fmt="o", color=color, markersize=4, capsize=2, linewidth=0.9, label=f"{label}, counted")
+        if isinstance(r, DemFragility) and any(r.censored):
+            low, high = run.array(name, "stripe_bound_low"), run.array(name, "stripe_bound_high")
+            ax.vlines(
+                level, low, high, color=style.THRUST, alpha=0.3, linewidth=6, label="collapse, with all censored runs standing or collapsed"
+            )
         if "stripe_rule_least" in arrays:
             ax.fill_between(
                 level,
@@ -268,15 +278,16 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_ylabel("probability")
         ax.set_title(f"{r.motions} motions at {len(level)} levels")
         ax.legend(loc="best")
-        return style.save(fig, folder, f"{name}-curve"), (
-            f"Points: share of the motions that cause collapse at a level, with {100 * r.confidence:g} % Wilson "
-            "intervals. Curves: fitted probability of collapse at a level, with its bootstrap band; and "
-            "probability of collapse at this or a lower level (interval-censored likelihood)."
+        points = f"Points: share of the motions that cause collapse at a level, with {100 * r.confidence:g} % Wilson intervals."
+        curves = (
+            "Curves: fitted probability of collapse at a level, with its bootstrap band; and probability of collapse at this or a lower "
+            "level (interval-censored likelihood)."
         )
+        return style.save(fig, folder, f"{name}-curve"), f"{points} {curves}" if len(grid) else points
 
 
 def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
-    r = run.results_of(name, OverLevels)
+    r = run.results_of(name, LevelShares)
     level, ratio, over, risen = (
         run.array(name, key) for key in ("stripe_level", "incremental_ratio", "incremental_over", "incremental_risen")
     )
@@ -299,9 +310,15 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_xlim(-0.02, place + 0.03)
         ticks = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0, place]
         ax.set_xticks(ticks, [*(f"{x:g}" for x in ticks[:-1]), "collapse"])
-        ax.set_xlabel("greatest rotation / critical rotation")
+        ax.set_xlabel(
+            "greatest displacement / displacement of collapse" if isinstance(r, DemFragility) else "greatest rotation / critical rotation"
+        )
         ax.set_ylabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
         style.legend_below(fig, ax)
+        if "grid" not in run.arrays[name]:
+            return style.save(fig, folder, f"{name}-incremental"), (
+                f"Greatest displacements of {min(len(ratio), HAIRS)} motions over the size of the structure, with the percentiles of all {r.motions}."
+            )
         return style.save(fig, folder, f"{name}-incremental"), (
             f"Incremental curves of {min(len(ratio), HAIRS)} motions, with the percentiles of all {r.motions} motions. "
             f"{r.resurrections} motions overturn the structure at one level but not at a higher level."

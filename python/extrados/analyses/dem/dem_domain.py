@@ -141,7 +141,7 @@ def run(context: Context, options: DemDomain) -> Result:
     """Curves of the shortest failing durations, with their sensitivity, beside those of the four-hinge model."""
     model: Model | SolidModel
     if isinstance(stones_of(context.building, options), Assembly):
-        model = make_model(context, options)
+        model = make_model(context.building, options)
         context.warnings += dem_model.warnings(model, options)
         varied = _varied(options, model.values)
     else:

@@ -14,7 +14,7 @@ from extrados.schema.quantities import engineering
 
 def run(context: Context, options: DemParameters) -> Result:
     """What a run with these options would use, and the damping constants of the three rules."""
-    model = make_model(context, options)
+    model = make_model(context.building, options)
     v = model.values
     result = Result("dem-parameters")
     constants = {name: impact_rules.damping_constant(float(v.impact.of(name).max())) for name in ("rotation", "corner", "edge")}

@@ -16,7 +16,7 @@ def run(context: Context, options: Dem) -> Result:
     """A run with its variations, or a tilt test; of a section, or of solids."""
     tilted = options.test == "tilt"
     if isinstance(stones_of(context.building, options), Assembly):
-        model = make_model(context, options)
+        model = make_model(context.building, options)
         context.warnings += dem_model.warnings(model, options)
         of_section = tilt if tilted else history
         return compared(context, options.rigid, model, lambda: of_section.run(context, options, model))

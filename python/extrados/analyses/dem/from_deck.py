@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from extrados.analyses.context import Context
 from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.calibration import beta_for_restitution
 from extrados.analyses.dem.model import JointValues, Model
@@ -52,9 +51,8 @@ def joint_values(building: Building, rigid: bool = False) -> JointValues:
     return values
 
 
-def make_model(context: Context, options: DemTable) -> Model:
-    """The model of a deck; Refused where a block has no area or crosses itself."""
-    building = context.building
+def make_model(building: Building, options: DemTable) -> Model:
+    """The model of a section; Refused where a block has no area or crosses itself."""
     assembly = building.blocks()
     groups: tuple[tuple[int, ...], ...] = ()
     if options.merge == "three-bars":

@@ -17,6 +17,7 @@ from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.perturbed import probe_chaos
 from extrados.analyses.dem.seen import Seen, begun_result, doubts_of_run, moved_supports, numbers_of
 from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.thrust import put_thrust
 from extrados.analyses.dem.ties import segment_arrays, tie_arrays, tie_columns
 from extrados.analyses.dem.trial import Trial
 from extrados.analyses.dem.variations import vary
@@ -67,6 +68,7 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
     )
     numbers = _numbers(options, trial, seen, ground) | chaos
     _store(options, seen, ground, result)
+    numbers |= put_thrust(options, model, found, result)
     if seen.slides:
         result.warnings.append(f"joints slide by up to {three_figures(1e3 * seen.sliding.peak)} mm")
     if who := numbers["off_footing"]:

@@ -1,6 +1,7 @@
 """Joint stiffness, impact frequencies and damping of discrete elements (thesis 7.3)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -45,6 +46,19 @@ class ContactValues:
     def ratios(self) -> dict[str, float]:
         """Least fraction of critical damping over the joints at each impact frequency."""
         return {name: float(damping_ratio(self.beta, self.impact.of(name)).min()) for name in ("rotation", "corner", "edge")}
+
+    def scaled(self, stiffness: float = 1.0, damping: float = 1.0, friction: float | None = None) -> Self:
+        """Other stiffnesses, beta and friction; the impact frequencies follow the stiffness."""
+        root = np.sqrt(stiffness)
+        impact = Impact(self.impact.corner * root, self.impact.edge * root, self.impact.rotation * root)
+        return replace(
+            self,
+            stiffness=self.stiffness * stiffness,
+            shear_stiffness=self.shear_stiffness * stiffness,
+            beta=self.beta * damping,
+            impact=impact,
+            friction=self.friction if friction is None else np.full_like(self.friction, friction),
+        )
 
 
 def damping_constant(frequency: float, ratio: float = 1.0) -> float:

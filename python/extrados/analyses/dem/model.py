@@ -28,19 +28,6 @@ class JointValues(ContactValues):
 
     length: np.ndarray
 
-    def scaled(self, stiffness: float = 1.0, damping: float = 1.0, friction: float | None = None) -> "JointValues":
-        """Other stiffnesses, beta and friction; the impact frequencies follow the stiffness."""
-        root = np.sqrt(stiffness)
-        impact = impact_rules.Impact(self.impact.corner * root, self.impact.edge * root, self.impact.rotation * root)
-        return replace(
-            self,
-            stiffness=self.stiffness * stiffness,
-            shear_stiffness=self.shear_stiffness * stiffness,
-            beta=self.beta * damping,
-            impact=impact,
-            friction=self.friction if friction is None else np.full_like(self.friction, friction),
-        )
-
 
 @dataclass(frozen=True)
 class Model:

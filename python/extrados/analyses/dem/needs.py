@@ -8,9 +8,12 @@ import numpy as np
 from extrados import room
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
+from extrados.analyses.dem.sampled import refuse_uncertain
 from extrados.analyses.dem.solid_model import refusals, refuse_shoves, refuse_stones
 from extrados.analyses.dem.ties import refuse_rigid_ties, section_strands
 from extrados.analyses.needs import SHARE, Need, stones_of
+from extrados.analyses.statistics.annual import hazard_curve
+from extrados.analyses.statistics.needs import refuse_few_motions
 from extrados.model.errors import BadGeometry, Key
 from extrados.model.geometry.anchors import moved_joints
 from extrados.model.geometry.assembly import Assembly
@@ -27,6 +30,8 @@ VALUES_OF_BLOCK, VALUES_OF_JOINT = 20, 12
 def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
     building = context.building
+    if isinstance(options, tables.DemFragility):
+        yield from _needs_of_many(context, options)
     try:
         stones = stones_of(building, options)
     except BadGeometry:
@@ -54,6 +59,15 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
             yield context.refuse_motion
         if options.track:
             yield lambda: refuse_untracked(stones.block_names, options)
+
+
+def _needs_of_many(context: Context, options: tables.DemFragility) -> Iterator[Need]:
+    """What an ensemble needs: motions, a hazard curve, uncertain values that the structure has."""
+    yield lambda: refuse_uncertain(context.building, options)
+    yield lambda: refuse_few_motions(context, options.count, bool(options.uncertain))
+    hazard = options.hazard
+    if hazard is not None:
+        yield lambda: hazard_curve(hazard, context.deck.folder)
 
 
 def _refuse_long(options: tables.Dem, blocks: int, joints: int) -> None:

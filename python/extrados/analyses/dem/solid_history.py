@@ -17,6 +17,7 @@ from extrados.analyses.dem.solid_measures import SolidsSeen
 from extrados.analyses.dem.solid_model import SolidModel, moves_of
 from extrados.analyses.dem.solid_settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.thrust import put_thrust
 from extrados.analyses.dem.ties import segment_arrays, tie_arrays, tie_columns
 from extrados.analyses.dem.words import solid_answer
 from extrados.analyses.limit.solids import scene_arrays
@@ -71,7 +72,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
         return solid_measures.look(model, one, options.floor is not None)
 
     chaos = probe_chaos(context, job_of if options.perturbed else None, idle, found, model.count, collapse, look, result)
-    numbers = _numbers(options, seen, collapse) | chaos
+    numbers = _numbers(options, seen, collapse) | chaos | put_thrust(options, model, found, result)
     result.results = r = SolidDemRun(**numbers, horizontal_components=1 if across is None else 2)
     _store(options, seen, ground, result)
     if across is not None:
@@ -153,7 +154,7 @@ def _store(options: Dem, seen: SolidsSeen, ground: np.ndarray, result: Result) -
     forces = tie_columns(model.ties, found.tension)
     forces |= force_columns(model, found)
     result.tables["dem"] = TableData(columns | energies | forces, units | dict.fromkeys(energies, "J") | dict.fromkeys(forces, "N"))
-    result.arrays = {
+    result.arrays |= {
         **run_arrays(model, found, measures.snapshot_times(options, found)),
         "shift": Array(
             shift, ("time", "block", "axis3"), "m", "displacements of the centroids, from the position at rest under self-weight"

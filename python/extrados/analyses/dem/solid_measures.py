@@ -90,7 +90,7 @@ def contacts(model: SolidModel, run: dem3.Run) -> tuple[np.ndarray, np.ndarray, 
     for j, (a, b) in enumerate(zip(one.a.tolist(), one.b.tolist(), strict=True)):
         corners = one.polygon[j]
         bodies = (model.count + int(model.supports.of_joint[j]) if k == GROUND else k for k in (a, b))
-        (moved, normal), (other, back) = (_carried(run, k, corners, one.normal[j]) for k in bodies)
+        (moved, normal), (other, back) = (carried(run, k, corners, one.normal[j]) for k in bodies)
         mean = normal + back
         mean /= np.linalg.norm(mean, axis=1)[:, None]
         apart = moved - other
@@ -105,10 +105,13 @@ def contacts(model: SolidModel, run: dem3.Run) -> tuple[np.ndarray, np.ndarray, 
     return opening, slip, state
 
 
-def _carried(run: dem3.Run, body: int, points: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points (time, k, 3) [m] and a normal (time, 3) carried along with a body, or a support, from its settled state."""
-    turn = run.turn[:, body] @ run.settled_turn[body].T
-    arm = points - run.settled[body]
+def carried(
+    run: dem3.Run, body: int, points: np.ndarray, normal: np.ndarray, rest: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points (time, k, 3) [m] and a normal (time, 3) carried along with a body, or a support, from its settled state, or from where it was
+    drawn with its centroid at `rest` [m]."""
+    turn = run.turn[:, body] if rest is not None else run.turn[:, body] @ run.settled_turn[body].T
+    arm = points - (run.settled[body] if rest is None else rest)
     return run.place[:, None, body] + np.einsum("txy,ky->tkx", turn, arm), turn @ normal
 
 

@@ -134,7 +134,7 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         ('merge = "three-bars"', options.merge != "none", ("analysis", "merge")),
         *((key, key in given, ("analysis", key)) for key in ("vary_damping", "vary_stiffness", "vary_friction")),
         (
-            "[[initial.movements]] in a tilt test or in a map of pulses (dem-domain)",
+            "[[initial.movements]] in a tilt test or in a map of pulses (dem-domain), or in dem-fragility",
             bool(building.initial.movements) and not moves,
             ("initial", "movements"),
         ),

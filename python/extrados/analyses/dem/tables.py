@@ -1,11 +1,12 @@
-"""Analysis kinds of the discrete elements: dem, dem-domain, dem-parameters."""
+"""Analysis kinds of the discrete elements: dem, dem-domain, dem-fragility, dem-parameters."""
 
 import itertools
 import math
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from extrados.analyses.statistics.tables import Hazard, Level, levels_in_units
 from extrados.analyses.table import Animated, BuildingAnalysis
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Angle, Gravities, Length, Time
@@ -207,6 +208,11 @@ class Dem(SpatialDem, Animated):
         "repeat the run with the motion times 1 + 1e-6, to find whether the response is chaotic. This "
         "takes twice the time; if the perturbation grows a thousandfold, ten times the time",
     )
+    thrust: bool = key(
+        False,
+        "for springs: also calculate the place of the force in each joint and the stress at its ends or corners; drawings and the film show "
+        "these forces",
+    )
     track: list[str] = key([], "names of the blocks whose rotation is recorded; default: all, at most 24", max_length=200)
     snapshot_times: list[Time] = key([], "times at which the structure is drawn; default: six characteristic times", max_length=24)
     vtk: bool = key(False, "write VTU files and a PVD collection")
@@ -219,6 +225,16 @@ class Dem(SpatialDem, Animated):
     slip: Length = key(1e-4, "slip that counts as sliding, in the search for the least coefficient of friction", gt=0)
     tilt_limit: Acceleration = key(2.0 * GRAVITY, "cap of the tilt test", gt=0)
     tilt_accuracy: Gravities = key(1e-3, "accuracy of the tilt test", ge=1e-6, le=0.1)
+
+    @model_validator(mode="after")
+    def _places_of_forces(self) -> "Dem":
+        if self.thrust and self.rigid:
+            raise ValueError(
+                'rigid contacts do not determine the place of a force in a joint: give solver = "compliant", or remove `thrust`'
+            )
+        if self.thrust and self.crushing:
+            raise ValueError("the key `thrust` gives the pressure of elastic springs: remove `thrust` or `crushing`")
+        return self
 
     @property
     def has_rates(self) -> bool:
@@ -279,6 +295,74 @@ class DemDomain(SpatialDem):
         found = super().reckons_with(building) | (of_springs(building) if self.cross_check else set())
         arch = self.direction is None and building.structure is not None and building.structure.kind == "arch"
         return found | {"joints.restitution"} if arch else found
+
+
+class DemFragility(SpatialDem):
+    """Discrete elements under many motions: probability of collapse at levels of an intensity, or of the structure in several sizes."""
+
+    kind: Literal["dem-fragility"]
+    needs_motion: ClassVar = True
+    starter_structure: ClassVar = "block"
+    starter_motion: ClassVar = "generated"
+    starter: ClassVar = {"count": "4", "levels": '["0.3 g", "0.6 g"]'}
+    count: int | None = key(None, "number of motions; default: 100, or the whole set", ge=1, le=1_000_000)
+    seed: int | None = key(
+        None, "seed of the random numbers: replaces that of a generated set, and also draws the uncertain values", ge=0, le=2**62
+    )
+    intensity: Literal["pga", "sa", "arias", "scale", "size"] = key(
+        "pga",
+        "quantity of the levels. pga: PGA [g]; sa: SA(sa_period) [g]; arias: Arias intensity [m/s]; scale: factor of the motions; size: "
+        "factor of all lengths of [structure] under the unscaled motions, as in a rocking spectrum",
+    )
+    levels: list[Level] = key(
+        about='levels of the intensity: numbers in the unit of the measure, or text such as "0.1 g"', min_length=1, max_length=100
+    )
+    sa_period: Time | None = key(None, "period of SA", gt=0)
+    sa_damping: float = key(0.05, "damping ratio of SA", ge=0, lt=1)
+    hazard: Hazard | None = key(None, "hazard curve of the site, from which the annual rate of collapse is calculated")
+    uncertain: dict[str, float] = key(
+        {},
+        "coefficients of variation of any length of [structure]; of the `friction` of all joints together; of `stiffness` and `damping` "
+        "of springs; of the `density` of each block. `imperfection`, for plane sections: deviation of corners and joints of blocks, "
+        "divided by the shortest joint. Sampled by a Sobol sequence, one building for each motion",
+    )
+    settle: Time | None = key(
+        None, "time after the motion in which the blocks must come to rest or collapse; default: 15 times the root of size / g", ge=0
+    )
+    output_step: Time = key(0.01, "spacing of the times at which openings, slips and displacements are read", ge=1e-6)
+    collapse_displacement: Length | None = key(
+        None,
+        "displacement of a block that counts as collapse, if the block also rotates or loses height; default: 1/5 of the "
+        "size of the structure",
+        gt=0,
+    )
+    confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
+    bootstrap: int = key(500, "number of bootstrap samples for the band of the fitted curve", ge=0, le=100_000)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _units(cls, data: Any) -> Any:
+        """Levels and intensities given as text, in the unit of their measure."""
+        return levels_in_units(data) if isinstance(data, dict) else data
+
+    @model_validator(mode="after")
+    def _sensible(self) -> "DemFragility":
+        if min(self.levels) <= 0.0:
+            raise ValueError("levels must be above zero")
+        if len(set(self.levels)) < len(self.levels):
+            raise ValueError("levels: the same level is given twice")
+        if (self.intensity == "sa") != (self.sa_period is not None):
+            raise ValueError('intensity = "sa" requires sa_period, and sa_period requires intensity = "sa"')
+        if self.hazard is not None and self.intensity in ("scale", "size"):
+            raise ValueError('a hazard curve requires the intensity "pga", "sa" or "arias"')
+        for name, value in self.uncertain.items():
+            if not 0.0 < value <= 0.5:
+                raise ValueError(f"uncertain.{name} is {value:g}, expected a coefficient of variation above 0, at most 0.5")
+        return self
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """The blocks start at rest on supports that move with the ground alone."""
+        return super().reckons_with(building) - {"initial.rotation_ratio", "initial.movements"}
 
 
 class DemParameters(DemTable):

@@ -46,6 +46,7 @@ NOT_IN_TILT = (
     "find_friction",
     "slip",
     "perturbed",
+    "thrust",
 )
 
 

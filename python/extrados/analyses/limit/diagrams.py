@@ -49,7 +49,12 @@ def diagram_of(assembly: SolidAssembly, form: Form, lines: int, meridians: int) 
     columns = columns_of(assembly, np.concatenate([inside, between]))
     if np.isnan(columns.low).any():
         x, y = np.concatenate([points, between])[int(np.flatnonzero(np.isnan(columns.low))[0])]
-        raise Refused(f"no block is above or below the branches of the diagram at x = {x:.3g} m, y = {y:.3g} m: give another `form`", FORM)
+        raise Refused(
+            f"no block is above or below the branches of the diagram at x = {x:.3g} m, y = {y:.3g} m. For an opening in the middle of a dome "
+            'give form = "radial". With other openings use `thrust`, which analyses the blocks: lines of compression that end at an opening '
+            "or at a straight free edge carry nothing",
+            FORM,
+        )
     weight = _weights(assembly, points)
     if form == "radial":  # the nodes of a hoop carry alike
         rings = len(points) // meridians * meridians

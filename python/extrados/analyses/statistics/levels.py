@@ -27,6 +27,7 @@ INTENSITIES = {
     "sa": ("SA", GRAVITY, "g"),
     "arias": ("Arias intensity", 1.0, "m/s"),
     "scale": ("factor", 1.0, ""),
+    "size": ("factor of all lengths", 1.0, ""),
 }
 #: Of the peak rotation over all motions at a level: the median, and what a normal variable has at one deviation
 PERCENTILES = (16, 50, 84)
@@ -103,11 +104,12 @@ def describe(
     repeats: int,
     seed: int,
     result: Result,
+    ratio: str = "peak rotation divided by the critical rotation",
 ) -> dict[str, Any]:
     """Tables, arrays, warnings and answer of the levels into `result`; returns the results of levels alone.
 
     word: what the building is called; initial: rotation at the start over the critical one; hazard: that of the site
-    in the measure of the levels; repeats: draws of the bootstrap.
+    in the measure of the levels; repeats: draws of the bootstrap; ratio: meaning of the ratios.
     """
     name, _, unit = INTENSITIES[intensity]
     n = len(seen.levels)
@@ -119,8 +121,8 @@ def describe(
         r["median_pga_g"] = [
             float(np.median(v[ok])) / GRAVITY if ok.any() else None for v, ok in zip(seen.pga.T, seen.valid.T, strict=True)
         ]
-    fits, draws = _curves(seen, confidence, repeats, seed, name, unit, r, result)
-    _incremental(seen, unit, r, result)
+    fits, draws = ({}, None) if intensity == "size" else _curves(seen, confidence, repeats, seed, name, unit, r, result)
+    _incremental(seen, unit, ratio, r, result)
     _table(seen, unit, r, result)
     result.answer = _answer(seen, fits, name, unit, word, confidence, r)
     if hazard is not None and "" in fits:
@@ -191,7 +193,7 @@ def _curves(
     return fits, draws
 
 
-def _incremental(seen: Stripes, unit: str, r: dict[str, Any], result: Result) -> None:
+def _incremental(seen: Stripes, unit: str, ratio: str, r: dict[str, Any], result: Result) -> None:
     """Incremental dynamic analysis: where each motion first brings it down, and levels above that do not."""
     levels, valid, over = seen.levels, seen.valid, seen.over
     fell = np.asarray(over.any(axis=1))
@@ -207,9 +209,7 @@ def _incremental(seen: Stripes, unit: str, r: dict[str, Any], result: Result) ->
         {"first_collapse": unit},
     )
     result.arrays |= {
-        "incremental_ratio": Array(
-            seen.ratio[:SHOWN], ("shown", "stripe"), "", "peak rotation divided by the critical rotation, for the first motions"
-        ),
+        "incremental_ratio": Array(seen.ratio[:SHOWN], ("shown", "stripe"), "", f"{ratio}, for the first motions"),
         "incremental_over": Array(over[:SHOWN].astype(np.int8), ("shown", "stripe"), "", "1: collapse"),
         "incremental_risen": Array(
             risen[:SHOWN].astype(np.int8),

@@ -97,13 +97,19 @@ def _time_of(context: Context, options: tables.Fragility, runs: int) -> str:
 
 def _refuse_motions(context: Context, options: tables.Fragility) -> None:
     """Refused where the deck has fewer motions than are asked for, or none of other durations."""
-    from extrados.analyses.motion_source import how_many
     from extrados.motions.tables import Generated
 
     if options.durations is not None and not isinstance(context.deck.motion, Generated):
         raise Refused("this requires a [motion] of kind 'generated'", ("analysis", "durations"))
+    refuse_few_motions(context, options.count, bool(options.uncertain))
+
+
+def refuse_few_motions(context: Context, count: int | None, uncertain: bool) -> None:
+    """Refused where the deck has fewer motions than are asked for, unless each acts on a building of its own."""
+    from extrados.analyses.motion_source import how_many
+
     there = how_many(context)
-    if there is not None and options.count is not None and options.count > there and not options.uncertain:
+    if there is not None and count is not None and count > there and not uncertain:
         raise Refused(
-            f"{options.count}, but the deck has {there} motion{'s' if there > 1 else ''}: expected at most {there}", ("analysis", "count")
+            f"{count}, but the deck has {there} motion{'s' if there > 1 else ''}: expected at most {there}", ("analysis", "count")
         )

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 #: Measures of levels that have a dimension: SI unit, and the unit of a bare number
 LEVELS = {"pga": ("m/s^2", "g"), "sa": ("m/s^2", "g"), "arias": ("m/s", "m/s")}
-WITHOUT_UNIT = ["pga-ratio", "pgv-ratio", "scale"]
+WITHOUT_UNIT = ["pga-ratio", "pgv-ratio", "scale", "size"]
 Level = Annotated[float, OrText()]
 #: Uncertain values by the kind of structure; others that rock by a mechanism know those of STONES
 UNCERTAIN = {
@@ -148,14 +148,7 @@ class Fragility(RockingTable):
     @classmethod
     def _units(cls, data: Any) -> Any:
         """Levels and intensities given as text, in the unit of their measure."""
-        if not isinstance(data, dict):
-            return data
-        hazard = data.get("hazard")
-        found = {**data, "levels": _numbers(data.get("levels"), data.get("intensity", "pga"), "levels")} if "levels" in data else data
-        if isinstance(hazard, dict) and "intensities" in hazard:
-            numbers = _numbers(hazard["intensities"], data.get("intensity", "pga"), "hazard.intensities")
-            found = {**found, "hazard": {**hazard, "intensities": numbers}}
-        return found
+        return levels_in_units(data) if isinstance(data, dict) else data
 
     @property
     def watches_samples(self) -> bool:
@@ -206,7 +199,17 @@ class Fragility(RockingTable):
         return self
 
 
-def _numbers(values: Any, intensity: Any, key: str) -> Any:
+def levels_in_units(data: dict[str, Any]) -> dict[str, Any]:
+    """The keys of a table with its `levels` and the `intensities` of its `hazard` as numbers in the unit of its `intensity`."""
+    hazard, measure = data.get("hazard"), data.get("intensity", "pga")
+    found = {**data, "levels": numbers_in(data.get("levels"), measure, "levels")} if "levels" in data else data
+    if isinstance(hazard, dict) and "intensities" in hazard:
+        numbers = numbers_in(hazard["intensities"], measure, "hazard.intensities")
+        found = {**found, "hazard": {**hazard, "intensities": numbers}}
+    return found
+
+
+def numbers_in(values: Any, intensity: Any, key: str) -> Any:
     """Numbers in the unit of a measure for those given as text with a unit; anything else stays for pydantic to judge."""
     if not isinstance(values, list) or not any(isinstance(v, str) for v in values):
         return values

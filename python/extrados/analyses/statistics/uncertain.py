@@ -1,7 +1,7 @@
 """Buildings whose sizes, corners, stones and impacts are not known exactly: rockers at points of the unit cube."""
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from scipy.stats import norm, qmc
@@ -14,6 +14,7 @@ from extrados.limit.errors import CannotStand
 from extrados.model.errors import BadGeometry, NoView
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.deviation import resurveyed
+from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.views.building import Building
 from extrados.views.rockers.block import BlockModel
 from extrados.views.rockers.rocker import Rocker, make_rocker
@@ -23,8 +24,26 @@ from extrados.views.rockers.stack import rocks_as_stack
 BY_STONE = ("density", "imperfection")
 
 
+Stones = TypeVar("Stones", Assembly, SolidAssembly)
+
 #: In place of the kind of a body: the building cannot stand
 FALLEN = -2
+
+
+def factors_of(uncertain: dict[str, float], draw: np.ndarray) -> tuple[dict[str, float], dict[str, int]]:
+    """Lognormal factors of mean 1 by name, and seeds of the names of BY_STONE, from the coefficients of variation and a point (names,) of
+    the unit cube; names in order."""
+    names = sorted(uncertain)
+    spread = np.sqrt(np.log1p(np.array([uncertain[n] for n in names]) ** 2))
+    row = np.exp(spread * norm.ppf(np.clip(draw, 1e-12, 1.0 - 1e-12)) - 0.5 * spread**2)
+    factor = dict(zip(names, row.tolist(), strict=True))
+    return factor, {name: int(draw[i] * 2.0**53) for i, name in enumerate(names) if name in BY_STONE}
+
+
+def sobol_draws(names: int, count: int, seed: int) -> np.ndarray:
+    """Points (count, names) of the unit cube by a scrambled Sobol sequence."""
+    power = max(1, int(np.ceil(np.log2(count))))
+    return np.asarray(qmc.Sobol(names, scramble=True, seed=seed).random_base2(power)[:count])
 
 
 @dataclass(frozen=True)
@@ -48,12 +67,7 @@ class Sample:
 
     def rocker_and_building(self, k: int) -> tuple[Rocker, Building]:
         """The same with the building itself, whose stones are the nominal ones where `density` or `imperfection` vary."""
-        names = sorted(self.options.uncertain)
-        spread = np.sqrt(np.log1p(np.array([self.options.uncertain[n] for n in names]) ** 2))
-        draw = self.draws[k]
-        row = np.exp(spread * norm.ppf(np.clip(draw, 1e-12, 1.0 - 1e-12)) - 0.5 * spread**2)
-        factor = dict(zip(names, row.tolist(), strict=True))
-        seeds = {name: int(draw[i] * 2.0**53) for i, name in enumerate(names) if name in BY_STONE}
+        factor, seeds = factors_of(self.options.uncertain, self.draws[k])
         return _model(self.building, self.options, factor, seeds)
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
@@ -94,9 +108,7 @@ class Bodies:
 
 def sampled(context: Context, options: Fragility, base: Rocker, count: int) -> Bodies:
     """One structure for each motion with uncertain values drawn by a scrambled Sobol sequence."""
-    power = max(1, int(np.ceil(np.log2(count))))
-    draws = qmc.Sobol(len(options.uncertain), scramble=True, seed=options.seed or 0).random_base2(power)[:count]
-    return bodies_at(context, options, base, draws)
+    return bodies_at(context, options, base, sobol_draws(len(options.uncertain), count, options.seed or 0))
 
 
 def bodies_at(context: Context, options: Fragility, base: Rocker, draws: np.ndarray) -> Bodies:
@@ -167,21 +179,26 @@ def _model(building: Building, options: Fragility, factor: dict[str, float], see
     changed = building.having(
         structure=structure.model_copy(update=update), supports=building.supports.model_copy(update=base), joints=joints
     ).apart()
-    stones = _stones(changed.blocks(), options, seeds) if seeds else None
+    stones = drawn_stones(changed.blocks(), options.uncertain, seeds) if seeds else None
     rocker = make_rocker(changed, options.form == "linear", stones, options.soft_base)
     if not isinstance(rocker.model, BlockModel) and not options.watches_samples:
         rocker = rocker.unwatched()  # tables of the joints of many stones are long
     return (rocker.rebounding(factor["restitution"]) if "restitution" in factor else rocker), changed
 
 
-def _stones(assembly: Assembly, options: Fragility, seeds: dict[str, int]) -> Assembly:
-    """The assembly with the masses and the places of its stones drawn anew."""
+def drawn_stones(assembly: Assembly, uncertain: dict[str, float], seeds: dict[str, int]) -> Assembly:
+    """The assembly with the masses and the places of its blocks drawn anew."""
     if "imperfection" in seeds:
-        deviation = options.uncertain["imperfection"] * float(assembly.length.min())
+        deviation = uncertain["imperfection"] * float(assembly.length.min())
         assembly = resurveyed(assembly, deviation, np.random.default_rng([0, seeds["imperfection"]]))
-    if "density" in seeds:
-        spread = np.sqrt(np.log1p(options.uncertain["density"] ** 2))
-        random = np.random.default_rng([1, seeds["density"]])
-        share = np.exp(spread * random.standard_normal(len(assembly.mass)) - 0.5 * spread**2)
-        assembly = replace(assembly, mass=assembly.mass * share, inertia=assembly.inertia * share)
-    return assembly
+    return drawn_masses(assembly, uncertain, seeds)
+
+
+def drawn_masses(assembly: Stones, uncertain: dict[str, float], seeds: dict[str, int]) -> Stones:
+    """The assembly with the masses of its blocks drawn anew."""
+    if "density" not in seeds:
+        return assembly
+    spread = np.sqrt(np.log1p(uncertain["density"] ** 2))
+    random = np.random.default_rng([1, seeds["density"]])
+    share = np.exp(spread * random.standard_normal(len(assembly.mass)) - 0.5 * spread**2)
+    return replace(assembly, mass=assembly.mass * share, inertia=(assembly.inertia.T * share).T)

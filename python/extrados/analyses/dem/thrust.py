@@ -1,0 +1,202 @@
+"""Places of the forces in joints with springs, and the stress at their ends or corners; in the plane and in space.
+
+The springs at the ends or corners of a contact give the centre of its pressure. The stress is that of a pressure that is linear over
+the contact, without tension, with the same force and centre (Navier).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.analyses.dem.measures import openings
+from extrados.analyses.dem.model import Model
+from extrados.analyses.dem.solid_measures import carried
+from extrados.analyses.dem.solid_model import SolidModel
+from extrados.analyses.dem.solid_settlement import corner_areas
+from extrados.analyses.dem.tables import Dem
+from extrados.core import dem, dem3, dem_run
+from extrados.model.geometry.solids.contacts import GROUND
+from extrados.results.model import Array, Result
+
+#: Parts of each side of the triangles by which a polygon is integrated; steps of Newton's method
+PARTS, STEPS = 8, 40
+#: Of the area of a contact: less under pressure is a corner or an edge
+LEAST = 1e-3
+
+
+@dataclass(frozen=True)
+class Thrust:
+    """Forces on the first block of each contact (time, contact, axis) [N], their places [m], NaN without a force, and stresses at the ends
+    (time, contact, 2) or at all corners (time, corner) [Pa]; infinite where a corner or an edge alone carries."""
+
+    force: np.ndarray
+    place: np.ndarray
+    stress: np.ndarray
+
+    def arrays(self) -> dict[str, Array]:
+        """As results store them."""
+        axes = self.force.shape[2]
+        joint, axis = ("joint", "axis") if axes == 2 else ("contact", "axis3")
+        at = ("time", joint, "joint_end") if axes == 2 else ("time", "corner")
+        where = "first and second end of each joint" if axes == 2 else "corners of the contacts, contact by contact"
+        return {
+            "thrust_force": Array(self.force, ("time", joint, axis), "N", "contact force on the first of the two blocks of each contact"),
+            "thrust_place": Array(self.place, ("time", joint, axis), "m", "centre of pressure of each contact; NaN without a force"),
+            "edge_stress": Array(
+                self.stress,
+                at,
+                "Pa",
+                f"compressive stress at the {where}: linear pressure without tension; infinite where an edge or a corner alone carries",
+            ),
+        }
+
+    @property
+    def at_rest(self) -> float | None:
+        """Greatest stress at the start of the motion [Pa]; None where an edge or a corner alone carries."""
+        found = float(self.stress[0].max(initial=0.0)) if len(self.stress) else np.inf
+        return found if np.isfinite(found) else None
+
+
+def thrust_of(model: Model | SolidModel, run: dem.Run | dem3.Run) -> Thrust:
+    """Forces, places and stresses of all contacts as drawn."""
+    if isinstance(model, Model):
+        assert isinstance(run, dem.Run)
+        return _of_section(model, run)
+    assert isinstance(run, dem3.Run)
+    return _of_solids(model, run)
+
+
+def put_thrust(options: Dem, model: Model | SolidModel, run: dem.Run | dem3.Run, result: Result) -> dict[str, float | None]:
+    """Arrays of the thrust into `result` where the deck requests them; the key of its results."""
+    if not options.thrust:
+        return {}
+    if np.nanmax(model.values.tension, initial=0.0) > 0.0:
+        result.warnings.append("the stresses at the edges of joints and the places of their forces neglect the tension of the mortar")
+    found = thrust_of(model, run)
+    result.arrays |= found.arrays()
+    return {"edge_stress_at_rest_Pa": found.at_rest}
+
+
+def _of_section(model: Model, run: dem.Run) -> Thrust:
+    one = model.assembly
+    gaps = openings(model, run, drawn=True)[:2]
+    spring = 0.5 * model.values.stiffness * one.length * one.depth
+    ends = np.stack([spring * np.maximum(-np.nan_to_num(gap), 0.0) for gap in gaps], axis=2)
+    normal = ends.sum(axis=2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = ends[..., 1] / normal
+    place = np.full((*normal.shape, 2), np.nan)
+    for j, pair in enumerate(model.rigid.joints):
+        if pair is None:
+            continue
+        rest, now = model.rigid.centroid[pair[0]], run.place[:, pair[0]]
+        arm = one.p[j] + share[:, j, None] * (one.q[j] - one.p[j]) - rest
+        c, s = np.cos(now[:, 2]), np.sin(now[:, 2])
+        place[:, j] = now[:, :2] + np.stack([c * arm[:, 0] - s * arm[:, 1], s * arm[:, 0] + c * arm[:, 1]], axis=1)
+    pairs = [None if pair is None else (min(pair), max(pair)) for pair in model.rigid.joints]
+    sides = [1.0 if pair is None or pair[0] <= pair[1] else -1.0 for pair in model.rigid.joints]
+    return Thrust(_shared(run, pairs, sides, normal), place, edge_stress(normal / (one.length * one.depth), share))
+
+
+def edge_stress(mean: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Stress at both ends (..., 2) of joints with a mean pressure [Pa] whose centre is at a share of the length from the first end."""
+    stress = np.zeros((*mean.shape, 2))
+    for k, near in enumerate((share, 1.0 - share)):
+        # from this end: within the middle third a trapezoid, nearer a triangle over three times the distance
+        with np.errstate(divide="ignore", invalid="ignore"):
+            value = np.where(near >= 1.0 / 3.0, mean * (4.0 - 6.0 * near), 2.0 * mean / (3.0 * near))
+        stress[..., k] = np.where(mean > 0.0, np.where(near <= 2.0 / 3.0, value, 0.0), 0.0)
+    return stress
+
+
+def _shared(run: dem_run.FoundRun, pairs: list[tuple[int, int] | None], sides: list[float], normal: np.ndarray) -> np.ndarray:
+    """Forces of the pairs of bodies (time, contact, axis) [N], on the first block of each contact, divided among the contacts of a pair as
+    their normal forces (time, contact) are."""
+    number = {(min(a, b), max(a, b)): (k, 1.0 if a <= b else -1.0) for k, (a, b) in enumerate(run.joint_body.tolist())}
+    found = np.zeros((*normal.shape, run.joint_force.shape[2]))
+    total: dict[tuple[int, int], np.ndarray] = {}
+    for j, pair in enumerate(pairs):
+        if pair is not None:
+            total[pair] = total.get(pair, 0.0) + normal[:, j]
+    for j, pair in enumerate(pairs):
+        if pair is None or pair not in number:
+            continue
+        k, way = number[pair]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.nan_to_num(normal[:, j] / total[pair])
+        found[:, j] = sides[j] * way * share[:, None] * run.joint_force[:, k]
+    return found
+
+
+def _of_solids(model: SolidModel, run: dem3.Run) -> Thrust:
+    one, rest = model.assembly, model.bodies().centroid
+    nt, nj = len(run.time), len(one.a)
+    normal, place, stress = np.zeros((nt, nj)), np.full((nt, nj, 3), np.nan), []
+    bodies = np.column_stack([one.a, one.b])
+    bodies = np.where(bodies == GROUND, model.count + model.supports.of_joint[:, None], bodies)
+    first, second = one.tangents
+    for j, (a, b) in enumerate(bodies.tolist()):
+        corners = one.polygon[j]
+        (moved, way), (other, back) = (carried(run, k, corners, one.normal[j], rest[k]) for k in (a, b))
+        mean = way + back
+        mean /= np.linalg.norm(mean, axis=1)[:, None]
+        gap = np.einsum("tkx,tx->tk", moved - other, mean)
+        force = model.values.stiffness[j] * corner_areas(corners) * np.maximum(-gap, 0.0)
+        normal[:, j] = force.sum(axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            weight = force / normal[:, j, None]
+        place[:, j] = np.einsum("tk,tkx->tx", weight, moved)
+        flat = (corners - corners.mean(axis=0)) @ np.stack([first[j], second[j]], axis=1)
+        stress.append(corner_stress(flat, normal[:, j], weight @ flat))
+    pairs = [(min(pair), max(pair)) for pair in bodies.tolist()]
+    sides = [1.0 if a <= b else -1.0 for a, b in bodies.tolist()]
+    return Thrust(_shared(run, [*pairs], sides, normal), place, np.concatenate(stress, axis=1))
+
+
+def corner_stress(corners: np.ndarray, force: np.ndarray, centre: np.ndarray) -> np.ndarray:
+    """Stress (time, corner) [Pa] at the corners (k, 2) [m] of a polygon under forces (time) [N] at centres (time, 2) [m]: the linear
+    pressure without tension in equilibrium with them, by Newton's method from the pressure with tension."""
+    points, area = _cells(corners)
+    basis = np.column_stack([np.ones(len(points)), points])
+    at = np.column_stack([np.ones(len(corners)), corners])
+    found = np.zeros((len(force), len(corners)))
+    whole = (basis * area[:, None]).T @ basis
+    scale = np.sqrt(area.sum())
+    for t in np.flatnonzero(force > 0.0):
+        wanted = force[t] * np.array([1.0, *centre[t]])
+        plane = np.linalg.solve(whole, wanted)
+        for _ in range(STEPS):
+            pressed = basis @ plane > 0.0
+            if area[pressed].sum() < LEAST * area.sum():
+                break
+            part = basis[pressed]
+            matrix = (part * area[pressed, None]).T @ part
+            rest = wanted - matrix @ plane
+            if np.abs(rest / np.array([1.0, scale, scale])).max() < 1e-9 * force[t]:
+                break
+            plane = plane + np.linalg.lstsq(matrix, rest, rcond=None)[0]
+        else:
+            plane = np.full(3, np.nan)
+        if not np.isfinite(plane).all() or area[basis @ plane > 0.0].sum() < LEAST * area.sum():
+            found[t, np.linalg.norm(corners - centre[t], axis=1).argmin()] = np.inf
+            continue
+        found[t] = np.maximum(at @ plane, 0.0)
+    return found
+
+
+def _cells(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points (n, 2) [m] and areas [m^2] that integrate products of linear functions over a polygon exactly: midpoints of the sides of small
+    triangles."""
+    middle, points, areas = corners.mean(axis=0), [], []
+    step = np.arange(PARTS)
+    i, j = (grid.ravel() for grid in np.meshgrid(step, step, indexing="ij"))
+    up, down = i + j < PARTS, i + j < PARTS - 1
+    for one, two in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        sides = np.stack([one - middle, two - middle]) / PARTS
+        size = 0.5 * abs(float(np.linalg.det(sides)))
+        for some, offsets in ((up, ((0.5, 0.0), (0.0, 0.5), (0.5, 0.5))), (down, ((1.0, 0.5), (0.5, 1.0), (0.5, 0.5)))):
+            base = np.column_stack([i[some], j[some]]).astype(float)
+            for offset in offsets:
+                points.append(middle + (base + np.array(offset)) @ sides)
+                areas.append(np.full(len(base), size / 3.0))
+    return np.concatenate(points), np.concatenate(areas)

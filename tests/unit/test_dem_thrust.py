@@ -1,0 +1,82 @@
+"""Places of forces in joints of discrete elements and stresses at their edges, against statics, closed forms and limit analysis."""
+
+import numpy as np
+import pytest
+
+import extrados
+from extrados.analyses.dem.thrust import corner_stress, edge_stress
+from extrados.schema.constants import GRAVITY
+
+STILL = '[[analysis]]\nkind = "dem"\nthrust = true\nperturbed = false\nend_time = {end}\n'
+
+
+def found(tmp_path, text: str):
+    (tmp_path / "deck.toml").write_text(text)
+    return extrados.run(tmp_path / "deck.toml")
+
+
+@pytest.mark.parametrize("share", [0.5, 0.4, 1.0 / 3.0, 0.2, 0.75])
+def test_linear_pressure_without_tension(share: float) -> None:
+    """Force and centre of the pressure between the two stresses are those given; a rectangle in space has the same."""
+    first, second = edge_stress(np.array([3.0]), np.array([share]))[0]
+    reach = 1.0 if min(first, second) > 0.0 else 3.0 * min(share, 1.0 - share)
+    x = np.linspace(0.0, 1.0, 200001)
+    pressure = np.maximum(np.interp(x, [0.0, 1.0], [first, second]), 0.0)
+    if reach < 1.0:
+        pressure = np.maximum(first * (1.0 - x / reach), 0.0) + np.maximum(second * (1.0 - (1.0 - x) / reach), 0.0)
+    force = np.trapezoid(pressure, x)
+    assert force == pytest.approx(3.0, rel=1e-4)
+    assert np.trapezoid(pressure * x, x) / force == pytest.approx(share, rel=1e-4)
+    rectangle = np.array([[-1.0, -0.5], [1.0, -0.5], [1.0, 0.5], [-1.0, 0.5]])
+    corners = corner_stress(rectangle, np.array([6.0]), np.array([[2.0 * share - 1.0, 0.0]]))[0]
+    assert corners == pytest.approx([first, second, second, first], rel=0.01, abs=1e-9)
+
+
+def test_pressure_at_a_corner_alone_has_no_finite_stress() -> None:
+    triangle = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    assert np.isinf(corner_stress(triangle, np.array([1.0]), np.array([[0.0, 0.0]]))[0, 0])
+    assert edge_stress(np.array([1.0]), np.array([1.0]))[0].tolist() == [0.0, np.inf]
+
+
+@pytest.mark.parametrize("direction", ["", "direction = 0.0\n"])
+def test_a_block_under_its_weight_and_a_moment(direction: str, tmp_path) -> None:
+    """A constant acceleration below uplift: trapezoidal pressure W/A (1 + 6 e/B), e = a/g h/2."""
+    width, height, share = 1.0, 2.0, 0.12
+    text = f'[structure]\nkind = "block"\nwidth = {width}\nheight = {height}\n[material]\ndensity = 2000\n'
+    text += f'[joints]\nfriction = 1.0\nnormal_stiffness = 1e8\nbeta = 0.02\n[motion]\nkind = "constant"\namplitude = "{share} g"\nduration = 9\n'
+    run = found(tmp_path, text + STILL.format(end=3.0) + direction)
+    mean, e = 2000.0 * GRAVITY * height, share * height / 2.0
+    last = np.sort(run.array("dem", "edge_stress")[-1].ravel())
+    assert last.max() == pytest.approx(mean * (1.0 + 6.0 * e / width), rel=0.01)
+    assert last.min() == pytest.approx(mean * (1.0 - 6.0 * e / width), rel=0.02)
+    assert run["dem"]["edge_stress_at_rest_Pa"] == pytest.approx(mean, rel=0.01)
+    force = run.array("dem", "thrust_force")[-1, 0]
+    assert force[-1] == pytest.approx(mean * width, rel=0.01)
+    place = run.array("dem", "thrust_place")[-1, 0]
+    assert abs(place[0] - run.array("dem", "thrust_place")[0, 0, 0]) == pytest.approx(e, rel=0.01)
+
+
+def test_an_arch_at_rest_has_an_admissible_line_in_equilibrium(tmp_path) -> None:
+    """The forces at their places are in equilibrium with the weight of each voussoir, and the horizontal thrust lies within the limits."""
+    text = '[structure]\nkind = "arch"\nradius = 10.0\nthickness = 1.5\nembrace = 157.5\nvoussoirs = 9\n[joints]\nnormal_stiffness = 1e9\n'
+    run = found(tmp_path, text + STILL.format(end=0.2) + '[[analysis]]\nkind = "tilt"\n')
+    force, place = (run.array("dem", name)[-1] for name in ("thrust_force", "thrust_place"))
+    a, b = run.array("dem", "joint_block").T
+    centre = run.array("dem", "place")[-1, :, :2]
+    weight = float(np.abs(force[:, 1]).max())
+    for k in range(len(centre)):
+        moment = 0.0
+        for j in range(len(force)):
+            way = 1.0 if a[j] == k else -1.0 if b[j] == k else 0.0
+            arm = place[j] - centre[k]
+            moment += way * (arm[0] * force[j, 1] - arm[1] * force[j, 0])
+        assert abs(moment) < 0.01 * weight * 1.5
+    horizontal = np.abs(force[:, 0])
+    least, most = (run["tilt"][name] for name in ("thrust_min_N", "thrust_max_N"))
+    assert horizontal == pytest.approx(horizontal.mean(), rel=0.01)
+    assert least < horizontal.mean() < most
+
+
+def test_rigid_contacts_refuse_the_place_of_a_force(tmp_path) -> None:
+    with pytest.raises(Exception, match="rigid contacts do not determine"):
+        found(tmp_path, '[structure]\nkind = "block"\nwidth = 1\nheight = 2\n' + STILL.format(end=0.1) + 'solver = "nonsmooth"\n')
