@@ -220,7 +220,8 @@ def span_of(tree: ast.Module, line: int) -> range:
 
 
 def relations_of(place: Path, fault: Fault) -> list[Row]:
-    """The tests of the property suite that run through the changed statement, the quickest first; beside a changed kernel, first those
+    """The tests of the property suite that run through the changed statement, the quickest first, then those that run through its
+    function, as other cases may go another way through it; beside a changed kernel, first those
     of the chapters that call kernels themselves."""
     rows = touched(place)
     if not fault.in_python:
@@ -228,8 +229,12 @@ def relations_of(place: Path, fault: Fault) -> list[Row]:
         beside = [row for row in rows if any(file.startswith(core) for file, _ in row.lines)]
         return sorted(beside, key=lambda row: row.chapter not in KERNEL_CHAPTERS)
     file = fault.file.removeprefix(f"{PACKAGE}/")
-    span = span_of(ast.parse((place / fault.file).read_text(encoding="utf-8")), fault.line)
-    return [row for row in rows if any((file, line) in row.lines for line in span)]
+    tree = ast.parse((place / fault.file).read_text(encoding="utf-8"))
+    inside = [n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef) and n.lineno <= fault.line <= (n.end_lineno or 0)]
+    body = max(inside, key=lambda n: n.lineno)
+    spans = (span_of(tree, fault.line), range(body.body[0].lineno, (body.end_lineno or 0) + 1))
+    ranks = {row: next((k for k, span in enumerate(spans) if any((file, n) in row.lines for n in span)), None) for row in rows}
+    return sorted((row for row in rows if ranks[row] is not None), key=lambda row: ranks[row] or 0)
 
 
 @cache

@@ -36,7 +36,7 @@ contains
 
    !> A model on nodes; equation 0 is held, the last `moved` are those of supports that move
    subroutine create(axes, freedoms, nodes, xy, equation, moved, factor, cracking, retention, closure, most_changes, &
-                     floor, handle, status)
+                     floor, extent, handle, status)
       use common_status, only : status_ok, status_out_of_memory
       use sla_group, only : material_options
       use sla_handle, only : model_register
@@ -53,6 +53,7 @@ contains
       integer(c_int), intent(in) :: closure               !! 1: closed cracks regain their stiffness
       integer(c_int), intent(in) :: most_changes
       real(c_double), intent(in) :: floor
+      integer(c_int), intent(in) :: extent                !! 1: crack bands are extents across the crack
       integer(c_int64_t), intent(out) :: handle
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
@@ -67,6 +68,7 @@ contains
       options%closure = closure /= 0
       options%most_changes = int(most_changes)
       options%floor = floor
+      options%extent = extent /= 0
       call model_new(xy, equation, moved, factor, options, model, status)
       if (status == status_ok) then
          call model_register(model, handle, status)

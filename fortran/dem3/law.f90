@@ -342,15 +342,15 @@ contains
       real(wp), intent(out) :: force(3)         !! on the second body [N]
       real(wp), intent(out) :: dash(3)          !! the dashpots' part of it
       real(wp) :: slip(3), predicted(3), star(3), trial(3), held(3), new(3), change(3), answer(3, 3)
-      real(wp) :: stiff_n, stiff_s, viscous, w, along(3), bound, length, push_n, spring_n, dash_n, held_by_mortar
+      real(wp) :: stiff_n, stiff_s, viscous, w, square, bound, push_n, spring_n, dash_n, held_by_mortar
 
       stiff_n = law%normal_stiffness * point%what%area
       stiff_s = law%shear_stiffness * point%what%area
       slip = u - dot_product(u, normal) * normal
       ! The shear spring turns into the present plane and keeps its force.
       held = point%spring_s - dot_product(point%spring_s, normal) * normal
-      length = length_of(held)
-      if (length > 0.0_wp) held = held * (length_of(point%spring_s) / length)
+      square = dot_product(held, held)
+      if (square > 0.0_wp) held = held * sqrt(dot_product(point%spring_s, point%spring_s) / square)
       trial = held - (stiff_s * drift) * slip
       spring_n = -stiff_n * gap
       answer = answers(arm_a, arm_b, a, b)
@@ -382,12 +382,10 @@ contains
          change = push_n * normal + trial + point%dash_s - point%force
          star = predicted + kick * matmul(answer, change)
          star = star - dot_product(star, normal) * normal
-         along = star
-         length = length_of(along)
+         square = dot_product(star, star)
          held = 0.0_wp
-         if (length > 0.0_wp) then
-            along = along / length
-            w = dot_product(along, matmul(answer, along))
+         if (square > 0.0_wp) then
+            w = dot_product(star, matmul(answer, star)) / square
             viscous = law%damping * stiff_s
             held = -viscous * (star - kick * w * point%dash_s) / (1.0_wp + viscous * kick * w)
          end if
@@ -422,10 +420,10 @@ contains
       real(wp), intent(in) :: vector(3)
       real(wp), intent(in) :: bound
       real(wp) :: short(3)
-      real(wp) :: length
-      length = length_of(vector)
+      real(wp) :: square
+      square = dot_product(vector, vector)
       short = vector
-      if (length > bound) short = vector * (bound / length)
+      if (square > bound**2) short = vector * (bound / sqrt(square))
    end function bounded
 
    !> Relative velocity at a point by a unit impulse on body 2 and its opposite on body 1 [1/kg]
@@ -444,7 +442,7 @@ contains
       if (.not. b%fixed) call add_turning(arm_b, b%inverse, w)
    end function answers
 
-   !> -[r] J [r], with J the inverse inertia
+   !> -[r] J [r], with J the inverse inertia: symmetric
    pure subroutine add_turning(r, inverse, w)
       real(wp), intent(in) :: r(3)
       real(wp), intent(in) :: inverse(3, 3)
@@ -454,9 +452,16 @@ contains
       do k = 1, 3                               ! rows of [r] J: r x the columns of J
          m(:, k) = cross(r, inverse(:, k))
       end do
-      do k = 1, 3                               ! times -[r] from the right: r x the rows
-         w(k, :) = w(k, :) + cross(r, m(k, :))
-      end do
+      ! Times -[r] from the right: r x the rows.
+      w(1, 1) = w(1, 1) + r(2) * m(1, 3) - r(3) * m(1, 2)
+      w(1, 2) = w(1, 2) + r(3) * m(1, 1) - r(1) * m(1, 3)
+      w(1, 3) = w(1, 3) + r(1) * m(1, 2) - r(2) * m(1, 1)
+      w(2, 2) = w(2, 2) + r(3) * m(2, 1) - r(1) * m(2, 3)
+      w(2, 3) = w(2, 3) + r(1) * m(2, 2) - r(2) * m(2, 1)
+      w(3, 3) = w(3, 3) + r(1) * m(3, 2) - r(2) * m(3, 1)
+      w(2, 1) = w(1, 2)
+      w(3, 1) = w(1, 3)
+      w(3, 2) = w(2, 3)
    end subroutine add_turning
 
    !> Add a force to a body, and its change to the body's predicted velocity

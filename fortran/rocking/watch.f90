@@ -43,10 +43,10 @@ module rocking_watch
       real(wp) :: least_friction = 0.0_wp  !! of them
       !> (joint and quantity N T E, input w h q'^2 and force of each restraint, 0 to panels, side)
       real(wp), allocatable :: value(:, :, :, :)
-      !> (joint, friction needed and how far outside, q'^2/w, h/w, panel, side) what a joint does not exceed in a cell
-      real(wp), allocatable :: bound(:, :, :, :, :, :)
-      !> (friction needed and how far outside, q'^2/w, h/w, panel, side) the greatest bound of all joints
-      real(wp), allocatable :: most(:, :, :, :, :)
+      !> (joint, friction needed and how far outside, cell) what a joint does not exceed in a cell of q'^2/w, h/w, panel, side
+      real(wp), allocatable :: bound(:, :, :)
+      !> (friction needed and how far outside, cell) the greatest bound of all joints
+      real(wp), allocatable :: most(:, :)
       real(wp) :: per_rotation(2) = 0.0_wp !! panels for one rad
       real(wp) :: per_drive(2) = 0.0_wp    !! cells for one m/s^2 to +x, over w
       real(wp) :: per_rate(2) = 0.0_wp     !! cells for one rad^2/s^2 of q'^2/w
@@ -117,18 +117,17 @@ contains
       real(wp), intent(in) :: time           !! [s]
       type(joint_demand), intent(inout) :: demand
       real(wp) :: x, input(3)
-      integer :: cell(3)
-      logical :: bounded
+      integer :: cell
 
-      call find_cell(watch, i, q, v, horizontal, vertical, cell, bounded)
-      if (bounded) then
-         if (cell_changes_nothing(watch, i, cell, demand)) return
+      cell = cell_at(watch, i, q, v, horizontal, vertical)
+      if (cell > 0) then
+         if (cell_changes_nothing(watch, cell, demand)) return
       end if
       x = max(q, 0.0_wp) / watch%critical(i)
       if (x > 1.0_wp) return
       input = [1.0_wp + vertical / gravity, real(3 - 2 * i, wp) * horizontal, v**2]
-      if (bounded) then
-         call enter_some(watch, i, x * real(watch%panels, wp), input, cell, time, demand)
+      if (cell > 0) then
+         call enter_some(watch, i, cell, x * real(watch%panels, wp), input, time, demand)
       else
          call enter_forces(watch, i, x * real(watch%panels, wp), input, pull, time, demand)
       end if
@@ -144,48 +143,55 @@ contains
       real(wp), intent(in) :: vertical       !! [m/s^2]
       type(joint_demand), intent(in) :: demand
       logical :: answer
-      integer :: cell(3)
-      call find_cell(watch, i, q, v, horizontal, vertical, cell, answer)
-      if (answer) answer = cell_changes_nothing(watch, i, cell, demand)
+      integer :: cell
+      cell = cell_at(watch, i, q, v, horizontal, vertical)
+      answer = cell > 0
+      if (answer) answer = cell_changes_nothing(watch, cell, demand)
    end function changes_nothing
 
-   !> The cell of the bounds in which a state lies, see check_demand
-   pure subroutine find_cell(watch, i, q, v, horizontal, vertical, cell, found)
+   !> The cell of the bounds in which a state lies, see check_demand; 0 beyond the cells, and where nothing is bounded
+   pure function cell_at(watch, i, q, v, horizontal, vertical) result(cell)
       class(joint_watch), intent(in) :: watch
       integer, intent(in) :: i               !! of the side
       real(wp), intent(in) :: q              !! [rad]
       real(wp), intent(in) :: v              !! [rad/s]
       real(wp), intent(in) :: horizontal     !! [m/s^2]
       real(wp), intent(in) :: vertical       !! [m/s^2]
-      integer, intent(out) :: cell(3)        !! of q'^2/w, of h/w, panel
-      logical, intent(out) :: found          !! false beyond the cells, and where nothing is bounded
+      integer :: cell
       real(wp) :: weight, x, drive, rate
-      found = .false.
       cell = 0
       if (.not. allocated(watch%most)) return
       weight = 1.0_wp
-      if (abs(vertical) > 0.0_wp) weight = 1.0_wp + vertical / gravity
-      if (.not. weight > 0.0_wp) return
-      if (abs(vertical) > 0.0_wp) weight = 1.0_wp / weight
+      if (abs(vertical) > 0.0_wp) then
+         weight = 1.0_wp + vertical / gravity
+         if (.not. weight > 0.0_wp) return
+         weight = 1.0_wp / weight
+      end if
       x = max(q, 0.0_wp) * watch%per_rotation(i)
       drive = horizontal * weight * watch%per_drive(i) + 0.5_wp * real(drives, wp)
       rate = v**2 * weight * watch%per_rate(i)
-      found = x < real(watch%bounded, wp) .and. drive >= 0.0_wp .and. drive < real(drives, wp) &
-         .and. rate < real(rates, wp)
-      if (found) cell = [int(rate) + 1, int(drive) + 1, int(x) + 1]
-   end subroutine find_cell
+      if (x < real(watch%bounded, wp) .and. drive >= 0.0_wp .and. drive < real(drives, wp) .and. rate < real(rates, wp)) then
+         cell = cell_number(watch, i, int(rate), int(drive), int(x))
+      end if
+   end function cell_at
+
+   !> Number of a cell
+   pure function cell_number(watch, i, rate, drive, panel) result(cell)
+      class(joint_watch), intent(in) :: watch
+      integer, intent(in) :: i                  !! of the side
+      integer, intent(in) :: rate, drive, panel !! each from 0
+      integer :: cell
+      cell = 1 + rate + rates * (drive + drives * (panel + watch%bounded * (i - 1)))
+   end function cell_number
 
    !> Does no joint change anything in a demand, wherever in a cell the state lies?
-   pure function cell_changes_nothing(watch, i, cell, demand) result(answer)
+   pure function cell_changes_nothing(watch, cell, demand) result(answer)
       class(joint_watch), intent(in) :: watch
-      integer, intent(in) :: i               !! of the side
-      integer, intent(in) :: cell(3)         !! see find_cell
+      integer, intent(in) :: cell            !! see cell_at
       type(joint_demand), intent(in) :: demand
       logical :: answer
-      associate (most => watch%most(:, cell(1), cell(2), cell(3), i))
-         answer = most(1) <= unchanged(demand%friction, demand%slips_at, watch%least_friction) &
-            .and. most(2) <= unchanged(demand%outside, demand%leaves_at, watch%tolerance)
-      end associate
+      answer = watch%most(1, cell) <= unchanged(demand%friction, demand%slips_at, watch%least_friction) &
+         .and. watch%most(2, cell) <= unchanged(demand%outside, demand%leaves_at, watch%tolerance)
    end function cell_changes_nothing
 
    !> Up to where a value changes neither a greatest one, nor a limit that was not exceeded yet
@@ -209,7 +215,7 @@ contains
       type(joint_demand), intent(in) :: demand
       logical :: answer
       real(wp) :: weight(2), x(2), drive(2), rate(2), friction, outside
-      integer :: first(3), last(3), k, n, panel
+      integer :: first(3), last(3), cell, n, panel
       answer = .false.
       if (.not. allocated(watch%most)) return
       weight = 1.0_wp + vertical / gravity
@@ -219,14 +225,14 @@ contains
       rate = v**2 / [maxval(weight), minval(weight)] * watch%per_rate(i)
       if (.not. (x(2) < real(watch%bounded, wp) .and. all(drive >= 0.0_wp .and. drive < real(drives, wp)) &
          .and. rate(2) < real(rates, wp))) return
-      first = [int(rate(1)), int(minval(drive)), int(x(1))] + 1
-      last = [int(rate(2)), int(maxval(drive)), int(x(2))] + 1
+      first = [int(rate(1)), int(minval(drive)), int(x(1))]
+      last = [int(rate(2)), int(maxval(drive)), int(x(2))]
       friction = unchanged(demand%friction, demand%slips_at, watch%least_friction)
       outside = unchanged(demand%outside, demand%leaves_at, watch%tolerance)
       do panel = first(3), last(3)
          do n = first(2), last(2)
-            do k = first(1), last(1)
-               if (watch%most(1, k, n, panel, i) > friction .or. watch%most(2, k, n, panel, i) > outside) return
+            do cell = cell_number(watch, i, first(1), n, panel), cell_number(watch, i, last(1), n, panel)
+               if (watch%most(1, cell) > friction .or. watch%most(2, cell) > outside) return
             end do
          end do
       end do
@@ -245,15 +251,15 @@ contains
       real(wp), intent(in) :: rate(2)        !! greatest q'^2/w [rad^2/s^2]
       integer(c_int), intent(out) :: status
       real(wp), allocatable :: most(:, :, :, :), here(:, :, :, :)
-      integer :: i, k, n, panel, stat
+      integer :: i, k, n, panel, cell, stat
 
       status = status_ok
       if (watch%restraints > 0 .or. any(drive <= 0.0_wp) .or. any(rate <= 0.0_wp)) return
       watch%bounded = min(watch%panels, max(4, runs / runs_per_panel))
-      allocate (watch%bound(watch%joints, 2, rates, drives, watch%bounded, 2), &
-         most(watch%joints, 2, 0:rates, 0:drives), &
+      cell = 2 * watch%bounded * drives * rates
+      allocate (watch%bound(watch%joints, 2, cell), most(watch%joints, 2, 0:rates, 0:drives), &
          here(watch%joints, 2, 0:rates, 0:drives), stat=stat)
-      if (stat == 0) allocate (watch%most(2, rates, drives, watch%bounded, 2), stat=stat)
+      if (stat == 0) allocate (watch%most(2, cell), stat=stat)
       status = merge(status_ok, status_out_of_memory, stat == 0)
       if (stat /= 0) return
       watch%per_rotation = real(watch%panels, wp) / watch%critical
@@ -269,9 +275,10 @@ contains
             end do
             do n = 1, drives
                do k = 1, rates
-                  watch%bound(:, :, k, n, panel + 1, i) = max(max(most(:, :, k - 1, n - 1), most(:, :, k, n - 1)), &
+                  cell = cell_number(watch, i, k - 1, n - 1, panel)
+                  watch%bound(:, :, cell) = max(max(most(:, :, k - 1, n - 1), most(:, :, k, n - 1)), &
                      max(most(:, :, k - 1, n), most(:, :, k, n)))
-                  watch%most(:, k, n, panel + 1, i) = maxval(watch%bound(:, :, k, n, panel + 1, i), dim=1)
+                  watch%most(:, cell) = maxval(watch%bound(:, :, cell), dim=1)
                end do
             end do
          end do
@@ -385,12 +392,12 @@ contains
    end subroutine enter_forces
 
    !> Enter the forces of the joints whose bounds in a cell could change the demand, where no restraint acts; see enter_forces
-   pure subroutine enter_some(watch, i, x, input, cell, time, demand)
+   pure subroutine enter_some(watch, i, cell, x, input, time, demand)
       class(joint_watch), intent(in) :: watch
       integer, intent(in) :: i               !! of the side
+      integer, intent(in) :: cell            !! see cell_at
       real(wp), intent(in) :: x              !! rotation in panels
       real(wp), intent(in) :: input(3)       !! w, h, q'^2
-      integer, intent(in) :: cell(3)         !! see find_cell
       real(wp), intent(in) :: time           !! [s]
       type(joint_demand), intent(inout) :: demand
       real(wp) :: weight(4), load(3), force(3), friction, outside
@@ -401,8 +408,7 @@ contains
       friction = unchanged(demand%friction, demand%slips_at, watch%least_friction)
       outside = unchanged(demand%outside, demand%leaves_at, watch%tolerance)
       do j = 1, watch%joints
-         if (watch%bound(j, 1, cell(1), cell(2), cell(3), i) <= friction .and. &
-            watch%bound(j, 2, cell(1), cell(2), cell(3), i) <= outside) cycle
+         if (watch%bound(j, 1, cell) <= friction .and. watch%bound(j, 2, cell) <= outside) cycle
          force = 0.0_wp
          do k = 1, 4
             load = weight(k) * input

@@ -401,8 +401,8 @@ contains
       real(wp), intent(in) :: a(3, 3, most_points), b(3, 3, most_points), d(3, 3, most_points), g(2, 2, most_points)
       real(wp), intent(in) :: v(6, most_corners)
       real(wp), intent(inout) :: f(6, most_corners)
-      real(wp) :: middle(3), curved(3), sheared(2), spin, pull
-      integer :: i, k
+      real(wp) :: middle(3), curved(3)
+      integer :: k
       do k = 1, group%rule%points
          middle = membrane(group, e, k, v)
          if (.not. group%section%bends) then
@@ -412,8 +412,21 @@ contains
          curved = curvature(group, e, k, v)
          call add_membrane(group, e, k, matmul(a(:, :, k), middle) + matmul(b(:, :, k), curved), f)
          call add_product(group%bend(:, :, k, e), matmul(b(:, :, k), middle) + matmul(d(:, :, k), curved), f)
-         sheared = shearing(group, e, k, v)
-         call add_product(group%shear(:, :, k, e), matmul(g(:, :, k), sheared), f)
+      end do
+      if (group%section%bends) call add_sheared(group, e, g, v, f)
+   end subroutine add_forces
+
+   !> Of these, those of the transverse shear and of the rotations about the normal
+   pure subroutine add_sheared(group, e, g, v, f)
+      class(shell_points), intent(in) :: group
+      integer, intent(in) :: e
+      real(wp), intent(in) :: g(2, 2, most_points)
+      real(wp), intent(in) :: v(6, most_corners)
+      real(wp), intent(inout) :: f(6, most_corners)
+      real(wp) :: spin, pull
+      integer :: i, k
+      do k = 1, group%rule%points
+         call add_product(group%shear(:, :, k, e), matmul(g(:, :, k), shearing(group, e, k, v)), f)
       end do
       if (.not. any(group%tie(:, e) > 0.0_wp)) return
       spin = 0.0_wp
@@ -428,7 +441,7 @@ contains
             f(1, i) = f(1, i) + 0.5_wp * group%middle(2, i, e) * pull
          end do
       end do
-   end subroutine add_forces
+   end subroutine add_sheared
 
    pure subroutine force(group, u, f)
       class(shell_points), intent(in) :: group
@@ -584,12 +597,11 @@ contains
       real(wp), intent(in) :: held(2, most_points)   !! [N m]
       real(wp), intent(out) :: column(most_entries)
       real(wp), intent(out) :: energy                !! [J]
-      real(wp) :: v(6, most_corners), part(6, most_corners), none(3, 3, most_points)
+      real(wp) :: v(6, most_corners), part(6, most_corners)
       integer :: k
-      none = 0.0_wp
       part = 0.0_wp
       call to_element(group, e, local, v)
-      call add_forces(group, e, none, none, none, g, v, part)
+      call add_sheared(group, e, g, v, part)
       energy = 0.5_wp * sum(part(:, 1:group%rule%nodes) * v(:, 1:group%rule%nodes))
       do k = 1, group%rule%points
          energy = energy - dot_product(held(:, k), shearing(group, e, k, v))

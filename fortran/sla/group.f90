@@ -120,6 +120,7 @@ module sla_group
       logical :: closure = .false.         !! closed cracks regain their stiffness
       integer :: most_changes = 10         !! openings and closings of a crack before it is left open
       real(wp) :: floor = 1.0e-6_wp        !! stiffness left after the last tooth over the initial one
+      logical :: extent = .false.          !! the crack band of a quadrilateral is its extent across the crack
    end type material_options
 
    !> Elements that give stiffness

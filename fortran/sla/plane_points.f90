@@ -7,6 +7,7 @@
 !> that opens. Cracks follow a row of quadrilaterals, whose mean width is the area over the mean projection of both
 !> diagonals onto the crack (Oliver 1989); they cross triangles wherever they meet them, and a straight line through a
 !> mesh meets each as often as its extent across the line is wide: the extent then makes the energy right on average.
+!> The same holds for quadrilaterals that a crack askew to their rows opens on its way, where options%extent asks for it.
 !>
 !> Strength and energy of a crack of bedded masonry are interpolated, f(n) = nx^2 fx + ny^2 fy: the very stress across
 !> it as it opens, where a = 1 (see sla_bedding). Where a > 1 this stress is less, and strength and energy of that crack
@@ -603,9 +604,11 @@ contains
       a = group%diagonal(:, 1, e)
       b = group%diagonal(:, 2, e)
       along = [a(2) * n(1) - a(1) * n(2), b(2) * n(1) - b(1) * n(2)]
+      across = [dot_product(a, n), dot_product(b, n)]
       if (is_triangle(group)) then
-         across = [dot_product(a, n), dot_product(b, n)]
          width = max(0.0_wp, maxval(across)) - min(0.0_wp, minval(across))
+      else if (group%options%extent) then
+         width = maxval(abs(across))
       else
          width = abs(a(1) * b(2) - a(2) * b(1)) / sum(abs(along))
       end if

@@ -147,9 +147,8 @@ STRUCTURES: dict[str, StructureKind] = {
     "building": StructureKind(
         "model.structures.plan:Plan",
         Lacks(
-            "a building in plan has walls, not blocks in a plane: draw one of its walls as `panel` or "
-            "`blocks`. For the whole building, use `pushover` (with [analysis.frame] for its piers by "
-            "codes), and `local-mechanism` for its walls out of plane"
+            "a building in plan has walls, not blocks in a plane: draw one of its walls as `panel` or `blocks`. For the whole building, "
+            "use `pushover` (with [analysis.frame] for its piers by codes), and `local-mechanism` for its walls out of plane"
         ),
         NO_PIERS,
         SECTION,

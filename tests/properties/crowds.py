@@ -424,3 +424,16 @@ def runs_that_end_while_blocks_move(deck: Deck, amplitude: float, share: float, 
     must(not moving or answer.outcome in ("open", "collapses"), f"the blocks still move: {answer.outcome}")
     if moving and answer.results.outcome != "collapse":
         must(answer.outcome == "open", f"no collapse, and the blocks still move: {answer.outcome}")
+
+
+@relation("dem", FIVE, 0.01, share=1.0)
+def crowds_without_losses(numbers: list, within: float) -> None:
+    """Stiff bodies in the plane that neither rub nor are damped keep their energy while they fall, hit and roll over their corners."""
+    mostly(numbers, _keeps_its_energy, within)
+
+
+def _keeps_its_energy(number_of: int, within: float) -> None:
+    made = crowd(np.random.default_rng(number_of), False, False)
+    plain = {"friction": 0.0, "damping": 0.0, "stiffness": 2e9, "move": 0.0 * made["move"], "step": 2e-5, "end": 0.3}
+    one = run_of({**made, **plain})
+    at_most("residual", float(np.abs(one.energy["residual"]).max()), 0.0, within, float(np.abs(one.energy["kinetic"]).max()) + 100.0)

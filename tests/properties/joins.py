@@ -1,16 +1,21 @@
 """What passes from one part of the program to the next: remarks, violated assumptions, ties, load paths, sizes."""
 
+import itertools
+
 import numpy as np
 from asking import Deck, ask, at_most, must, near
-from buildings import changed, decks, number, pulses
+from buildings import SOLIDS, changed, decks, drawn, number, pulses, signed_area
+from conservation import building
 from definitions_keys import DRUMS, PULSE
-from fields import compare_named, leaning, mirrored_question
+from fields import compare_named, leaning, mirrored_question, questions
 from hypothesis import reject
 from hypothesis import strategies as st
 from relations import EARTHQUAKES, RIGID, SLOW, ok, relation
 
 from extrados.analyses.left_out import left_out
 from extrados.decks.reader import make_deck
+from extrados.model.geometry.convex import overlap_depth
+from extrados.views.rigid import rigid_bodies
 
 LEFT_OUT = st.sampled_from(
     [
@@ -135,3 +140,61 @@ def a_tilt_of_elements_ends_by_collapse(deck: Deck, within: float) -> None:
     r = answer.results
     must((r.test, r.outcome, r.load_direction) == ("tilt", "collapse", "+x"), f"{r.test} {r.outcome} {r.load_direction}")
     must(answer.verdict.capacity is None or abs(answer.verdict.capacity - min(answer.capacity)) < within, f"{answer.verdict}")
+
+
+@relation("local-mechanism", decks("block", "column", "arch", "frame", friction=number(0.2, 0.7, 10)), 1e-6, share=0.5)
+def dilatant_multipliers_are_greater(deck: Deck, within: float) -> None:
+    """A multiplier with dilatant friction is given beside the least one only where it is greater."""
+    answer = ask(deck, "local-mechanism", mechanism="building")
+    ok(answer)
+    one, other = answer.results.multiplier, answer.results.multiplier_associated
+    must(other is None or other > one * (1.0 + within), f"dilatant {other}, least {one}")
+
+
+@relation("dem", st.tuples(decks("column", "frame"), st.integers(0, 10**6)), 1e-6, share=0.5)
+def overlaps_of_a_survey_are_cut(deck: Deck, seed: int, within: float) -> None:
+    """Stones whose overlaps lie within the tolerance no longer overlap as rigid bodies, and lose no more than what lies in others."""
+    made = drawn(deck)
+    rng = np.random.default_rng(seed)
+    low = min(np.min(np.array(block["points"])[:, 1]) for block in made["structure"]["block"])
+    for block in made["structure"]["block"]:
+        points = np.array(block["points"])
+        if points[:, 1].min() < low + 1e-3:
+            continue  # on the ground
+        middle = points.mean(axis=0)
+        block["points"] = (middle + (points - middle) * (1.0 + rng.uniform(0.0, 1e-3))).tolist()
+    made["structure"]["contact_tolerance"] = 0.02
+    stones = building(made).blocks()
+    made_rigid = rigid_bodies(stones)
+    parts, owner = made_rigid.parts, made_rigid.owner
+    for i, k in itertools.combinations(range(len(parts)), 2):
+        if owner[i] != owner[k]:
+            size = np.sqrt(min(abs(signed_area(parts[i])), abs(signed_area(parts[k]))))
+            at_most("overlap", overlap_depth(parts[i], parts[k]), 0.0, within, size)
+    whole = sum(abs(signed_area(o)) for o in stones.outlines)
+    left = sum(abs(signed_area(p)) for p, o in zip(parts, owner, strict=True) if o < made_rigid.count)
+    at_most("area lost", whole - left, 0.02 * whole, within)
+
+
+@relation("tilt", decks(*SOLIDS), 1e-9, share=0.5)
+def areas_of_contacts_in_space(deck: Deck, within: float) -> None:
+    """The area of a contact of solids is that of its polygon, by triangles about its mean, wherever the building lies."""
+    stones = building(deck).solids()
+    for polygon, found in zip(stones.polygon, stones.area, strict=True):
+        arm = np.asarray(polygon) - np.mean(polygon, axis=0)
+        whole = 0.5 * np.cross(arm, np.roll(arm, -1, axis=0)).sum(axis=0)
+        near("area", found, float(np.linalg.norm(whole)), within)
+
+
+@relation("rocking dem tilt thrust", questions(), 0.0, share=0.5)
+def axes_of_arrays_agree(deck: Deck, kind: str, table: Deck, within: float) -> None:
+    """Each axis of an array has a name, and axes of one name are of one length."""
+    answer = ask(deck, kind, **{key: value for key, value in table.items() if key != "kind"})
+    ok(answer)
+    lengths: dict[str, tuple[str, int]] = {}
+    for name, array in answer.result.arrays.items():
+        shape = np.asarray(array.data).shape
+        must(len(shape) == len(array.dims), f"{name}: {array.dims} of shape {shape}")
+        for axis, length in zip(array.dims, shape, strict=True):
+            other, size = lengths.setdefault(axis, (name, length))
+            must(size == length, f"{axis}: {length} in {name}, {size} in {other}")

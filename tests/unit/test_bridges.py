@@ -427,7 +427,7 @@ def test_a_train_of_the_deck_is_the_one_of_the_code() -> None:
     [
         ({"train": "LM1", "force": 1e5}, "`train` replaces"),
         ({"axles": [0.0, 1.0], "axle_loads": [1e5]}, "one load above 0 for each"),
-        ({"uniform": [{"load": 1e4}]}, "requires axle_loads"),
+        ({"uniform": [{"load": 1e4}]}, "requires `axle_loads`"),
         ({"axles": []}, "expected at least one axle"),
         ({"train": "LM71", "lanes": 2}, "is used only with train"),
         ({"axles": [], "uniform": [{"start": 2.0, "stop": 1.0, "load": 1e4}]}, "stop behind start"),
@@ -593,7 +593,7 @@ def test_a_sweep_reaches_into_fill_and_spans() -> None:
     soil = run({"kind": "sweep", "vary": "fill.passive", "values": [0.0, 0.5, 1.0], "locate": False}, fill=FILL)
     assert soil["collapse_accelerations_g"][1] == pytest.approx(plain["collapse_acceleration_g"], rel=1e-9)
     assert np.all(np.diff(soil["collapse_accelerations_g"]) > 0.0)
-    assert "a number from 0 to 0 instead of '1'" in run({"kind": "sweep", "vary": "spans.1.rise", "values": [1.0, 2.0]}).reason
+    assert "a number from 0 to 0 in place of '1'" in run({"kind": "sweep", "vary": "spans.1.rise", "values": [1.0, 2.0]}).reason
 
 
 def test_pushes_go_with_sliding_that_does_not_dilate() -> None:

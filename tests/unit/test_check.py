@@ -128,7 +128,7 @@ WRONG = {
     ),
     "record of dem": ("none.at2", BLOCK + '[motion] # here\nkind = "record"\nfile = "none.at2"\n' + DEM),
     "curve that is not there": ("none.csv", PANEL + SLA + 'measured = "none.csv" # here\n'),
-    "seeds that change nothing": ("seeds require", PANEL + SLA + "seeds = [1, 2] # here\n"),
+    "seeds that change nothing": ("`seeds` require", PANEL + SLA + "seeds = [1, 2] # here\n"),
     "run that is not there": ("results", PANEL + SLA + 'resume_from = "results" # here\n'),
     "load beside the wall": ("no node lies", PANEL + SLA + '[[analysis.reference]] # here\nkind = "point"\nx = 7.0\nfx = 1.0\n'),
     "hold beside the wall": (
@@ -262,7 +262,10 @@ WRONG = {
     "piers without a strength": ("compressive_strength", HOUSE + "[analysis.frame] # here\ndiagonal_strength = 5e4\n"),
     "mesh of shells that is not there": ("none.msh", '[structure]\nkind = "mesh"\nthickness = 0.3\nfile = "none.msh" # here\n' + PUSH),
     "speed of no film": ("requires animation", ARCH + TILT + "animation_speed = 0.5 # here\n"),
-    "wall without a load": ("give axial_load", PANEL + 'compressive_strength = "2 MPa"\n' + '[[analysis]] # here\nkind = "code-checks"\n'),
+    "wall without a load": (
+        "give `axial_load`",
+        PANEL + 'compressive_strength = "2 MPa"\n' + '[[analysis]] # here\nkind = "code-checks"\n',
+    ),
     "frequencies the wrong way": ("is not above", '[[analysis]]\nkind = "shake-table"\nlowest = 30\nhighest = 20 # here\n'),
     "energy ratio of an arch": ("`energy_ratio` is only for a block", ARCH + PULSE + "[joints]\nenergy_ratio = 0.5 # here\n" + ROCKING),
     "energy ratio of spectra": ("square root", PULSE + '[joints]\nenergy_ratio = 0.5 # here\n[[analysis]]\nkind = "rocking-spectrum"\n'),
@@ -314,7 +317,7 @@ WRONG = {
     ),
     "floor above the top": ("above the top", FACADE + "[[analysis.floors]]\nload = 1e3\nheight = 30 # here\n"),
     "side walls of a corner": (
-        "does not use side_walls",
+        "does not use `side_walls`",
         FACADE.replace('"facade"', '"corner"') + "crack_angle = 30\nside_walls = { thickness = 0.5, crack_angle = 20 } # here\n",
     ),
     "facade without weight": ("has no weight", "[material]\ndensity = 0.0 # here\n" + FACADE),
@@ -411,7 +414,7 @@ TOO_LONG = r"analysis\.output_step: a history of 1e\+08 s in steps of \S+ s is t
         ({"kind": "rocking", "end_time": 1e8}, TOO_LONG),
         (
             {"kind": "fragility", "count": 1_000_000, "levels": [0.001 * k for k in range(1, 501)], "uncertain": {"width": 0.05}},
-            r"analysis\.count: 1,000,000 motions or buildings at 500 levels, 5e\+08 runs, needs? about 450 GB .*at most \d+ runs fit",
+            r"analysis\.count: 1,000,000 motions or buildings at 500 levels, 5e\+08 runs, requires about 450 GB .*at most \d+ runs fit",
         ),
     ],
     ids=lambda one: one["kind"] if isinstance(one, dict) else "",

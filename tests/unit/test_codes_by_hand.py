@@ -132,7 +132,7 @@ def test_the_floor_spectrum_of_several_modes_is_the_root_of_the_sum_of_squares()
     site = {"code": "EN1998-1", "ground": "B", "acceleration": "0.15 g"}
     r = extrados.run({"analysis": {**base, "modes": modes, "spectrum": site}})["local-mechanism"]
     assert r.floor_acceleration_g == pytest.approx(2.5 * 0.18 * 1.1 * math.sqrt(1.01))
-    with pytest.raises(DeckError, match="the key `modes` already gives the value"):
+    with pytest.raises(DeckError, match="the key `modes` already gives this value"):
         make_deck({"analysis": {**base, "modes": modes, "storeys": 3}})
 
 

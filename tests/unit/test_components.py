@@ -77,7 +77,7 @@ def test_components_must_fit(tmp_path: Path, three: list[Path]) -> None:
     short = read_record(put(tmp_path / "short.at2", UP[:-7]))
     motion = record_motion(first, second=second, angle=10.0, vertical=short)
     assert motion.ground.samples.shape == (2, 294) and motion.horizontal.shape == (2, 294)
-    assert "301, 301, 294 samples and are cut" in motion.notes[0]
+    assert "301, 301, 294 samples; the longer ones are cut" in motion.notes[0]
     with pytest.raises(RecordError, match="two components"):
         deck_motion(tmp_path, kind="record", file="first.at2", vertical="first.at2")
     for keys in ({"second": "second.at2"}, {"angle": 30.0}):

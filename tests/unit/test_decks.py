@@ -91,11 +91,11 @@ def test_complaint(old: str, new: str, line: int, words: list[str]) -> None:
 
 #: A tie of `strengthen` and a span of a bridge whose keys contradict one another: rules of tables in lists
 NESTED = {
-    "debonding_force requires its source": (
+    "`debonding_force` requires its source": (
         '[analysis]\nkind = "strengthen"\nacceleration = "0.3 g"\n[[analysis.ties]]\nstart = [0, 1]\nend = [1, 1]\n'
         'debonding_force = "10 kN" # here\n'
     ),
-    "places` requires start_to or far_to": (
+    "places` requires `start_to` or `far_to`": (
         '[analysis]\nkind = "strengthen"\nacceleration = "0.3 g"\n[[analysis.ties]]\nstart = [0, 1]\nend = [1, 1]\nplaces = 5 # here\n'
     ),
     "intrados belongs to shape": (
@@ -110,7 +110,7 @@ def test_a_rule_of_a_table_in_a_list_has_the_line_of_the_key_that_it_names(words
     rows = NESTED[words].splitlines()
     line = 1 + next(k for k, row in enumerate(rows) if "# here" in row)
     found = complaints(NESTED[words])
-    key = words.split()[0].rstrip("`")
+    key = words.split()[0].strip("`")
     assert any(c.startswith(f"deck.toml:{line}:") and f".{key}: " in c for c in found), found
 
 

@@ -113,7 +113,7 @@ def test_a_noisy_wall_tilts_as_limit_analysis_finds() -> None:
     limit, found = answers(structure, analyses)
     assert found["collapse_acceleration_g"] == pytest.approx(limit["collapse_acceleration_g"], rel=0.015)
     told = [text for text in found.warnings if "moved faces of blocks by up to" in text]
-    assert len(told) == 1 and "mm onto their joints (contact_tolerance 3 mm)" in told[0]
+    assert len(told) == 1 and "mm, so that they meet at their joints (`contact_tolerance` 3 mm)" in told[0]
 
 
 def test_an_overlap_is_cut_where_it_is() -> None:

@@ -51,6 +51,7 @@ def test_a_column_rocks_in_the_direction_of_the_motion(tmp_path) -> None:
         answered(tmp_path, f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.8\ndirection = {d}\n') for d in (90.0, -90.0)
     )
     assert there.status == "ok" and there.results.outcome == "rocked" and there.results.energy_residual_ratio < 1e-2
+    assert there.results.time_step_s == pytest.approx(0.5 * there.results.critical_step_s)
     shift, other = (r.arrays["shift"].data for r in (there, back))
     assert np.abs(shift[..., 1]).max() > 0.02
     assert shift[..., 1] == pytest.approx(-other[..., 1], abs=5e-3 * np.abs(shift).max())

@@ -49,7 +49,7 @@ def test_both_are_reported_where_they_differ(tmp_path: Path) -> None:
     (result,) = run_analyses(Context(make_deck(tables, tmp_path), threads=1))
     r = result.results
     assert r.collapse_acceleration_face_law_g < 0.97 * r.collapse_acceleration_g
-    assert any("face law" in w and "In the mechanism along 90 degrees contact faces twist" in w for w in result.warnings)
+    assert any("face law" in w and "In the mechanism along 90 degrees, contact faces twist" in w for w in result.warnings)
     without = run({"kind": "column", "width": 1.0, "height": 0.5, "drums": 1}, 0.4, direction=0.0, rose=4, face_law=True)
     assert without.results.collapse_acceleration_face_law_g == pytest.approx(0.4, abs=1e-4)
     assert not any("face law" in w for w in without.warnings)

@@ -199,7 +199,7 @@ def test_durations() -> None:
         ({"count": -3}, "greater than or equal to 1"),
         ({"levels": [0.1, 0.0]}, "above zero"),
         ({"levels": [0.1], "durations": [1.0]}, "not both"),
-        ({"levels": [0.1], "intensity": "sa"}, "requires sa_period"),
+        ({"levels": [0.1], "intensity": "sa"}, "requires `sa_period`"),
         ({"uncertain": {"widht": 0.1}}, "unknown"),
         ({"sensitivity": 64}, "requires uncertain"),
         ({"uncertain": {"width": 0.1}, "sensitivity": 100}, "power of 2"),

@@ -135,7 +135,7 @@ def test_a_wall_that_nothing_joins_and_bad_plans_are_reported():
     assert results(given)["piers"] == 1
     given["analysis"][0]["control_level"] = 2
     analysis = extrados.run(given).analyses[0]
-    assert analysis["status"] == "refused" and "control_level is 2" in analysis["reason"]
+    assert analysis["status"] == "refused" and "`control_level` is 2" in analysis["reason"]
 
 
 @pytest.mark.parametrize(

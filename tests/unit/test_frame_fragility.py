@@ -98,7 +98,7 @@ def test_factors_have_their_mean_and_variation():
         ({"uncertain": {"colour": 0.2}}, "uncertain.colour is unknown"),
         ({"uncertain": {"young": 2.0}}, "at most 1"),
         ({"by": "pushover", "levels": [0.2]}, "levels` is used only with by ="),
-        ({"intensity": "sa"}, "requires sa_period"),
+        ({"intensity": "sa"}, "requires `sa_period`"),
         ({"uncertain": {"diagonal_strength": 0.2}, "frame": {}}, "the deck gives no value for it"),
     ],
 )

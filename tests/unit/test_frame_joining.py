@@ -244,7 +244,7 @@ def test_a_ring_beam_with_too_much_reinforcement_is_refused():
 
     made(0.999 * limit)
     made(f"{0.999e4 * limit} cm^2")
-    with pytest.raises(BadGeometry, match=r"wall 'wall': with bars of 23.9 cm\^2 in all the neutral axis is at 0.45 of the effective"):
+    with pytest.raises(BadGeometry, match=r"wall 'wall': with a total of 23.9 cm\^2 of bars, the neutral axis is at 0.45 of the effective"):
         made(1.001 * limit)
 
 

@@ -14,13 +14,14 @@ from extrados.analyses.context import Context
 from extrados.analyses.sequence import run_analyses
 from extrados.analyses.statistics import cloud
 from extrados.analyses.statistics.annual import rates
-from extrados.analyses.statistics.cloud import fit_cloud
+from extrados.analyses.statistics.cloud import describe, fit_cloud
 from extrados.analyses.statistics.uncertain import Sample
 from extrados.core import rocking
 from extrados.decks.reader import DeckError, make_deck
 from extrados.motions.from_deck import generated_set
 from extrados.motions.hazard import HazardCurve
 from extrados.results.model import Result
+from extrados.results.rocking import COLLAPSE, NO_HINGING, RECOVERY
 from extrados.views.rockers.arch import minimum_thickness
 
 BLOCK = {"kind": "block", "width": 0.3, "height": 1.5}
@@ -166,6 +167,17 @@ def test_cloud_finds_known_capacities_and_its_interval_covers(sets: int) -> None
     assert np.exp(np.mean(np.log(medians))) == pytest.approx(0.4, rel=0.015 * slack)
     assert covered / sets == pytest.approx(0.95, abs=0.035 * slack)
     assert rate_covered / sets == pytest.approx(0.95, abs=0.035 * slack)
+
+
+def test_a_cloud_that_shows_no_growth_is_said_not_to_determine_a_curve() -> None:
+    """One collapse at a middle intensity of five: the fitted median, 384 g, is far beyond all motions."""
+    x = np.array([0.135, 0.163, 0.266, 0.347, 1.48])
+    outcome = np.array([NO_HINGING, NO_HINGING, RECOVERY, COLLAPSE, RECOVERY])
+    for fallen, said in ((outcome, True), (np.where(np.arange(60) % 20 < 10, RECOVERY, COLLAPSE), False)):
+        at = x if len(fallen) == 5 else np.geomspace(0.2, 0.4, 20)[np.arange(60) % 20] * np.repeat([0.9, 1.0, 1.3], 20)
+        result = Result("fragility")
+        describe(at, fallen, np.ones(len(at)), "PGA", "g", [], None, 0.95, result)
+        assert any("do not show" in text for text in result.warnings) == said
 
 
 @pytest.mark.verify

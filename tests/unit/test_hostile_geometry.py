@@ -126,7 +126,7 @@ def test_a_nearly_straight_arc_of_a_great_radius_is_followed() -> None:
 
 def test_whole_numbers_of_hundreds_of_digits_are_no_places() -> None:
     huge = int("9" * 400)
-    with pytest.raises(BadGeometry, match="expected a list of lists of 2 numbers"):
+    with pytest.raises(BadGeometry, match="expected a list of rows of 2 numbers"):
         read_json(File(Path("a.json"), json.dumps({"blocks": [{"points": [[huge, 0], [1, 0], [1, 1]]}]}).encode()))
     mesh = {"vertex": {str(k): {"x": huge, "y": 0, "z": 0} for k in range(8)}, "face": {}}
     with pytest.raises(BadGeometry, match="expected a mesh"):
@@ -187,7 +187,7 @@ def test_bodies_of_many_corners_take_little_memory() -> None:
 def test_a_body_of_too_many_corners_is_reported(monkeypatch) -> None:
     monkeypatch.setattr("extrados.model.geometry.solids.meshes.MOST_CORNERS", 100)
     few, many = (read_solids({"graph": {"node": {"0": {"block": prism(k)}}}}, "a.json") for k in (60, 400))
-    with pytest.raises(BadGeometry, match="block 0 has more than 100 corners, the greatest number considered"):
+    with pytest.raises(BadGeometry, match="block 0 has more than 100 corners, the limit of this program"):
         stones_of(few, 2000.0, None, "a.json")
     # told before their faces are compared with each other, and before Qhull, which is as slow and hears no signal
     with pytest.raises(ManyFaces):
@@ -203,5 +203,5 @@ def test_bodies_over_each_other_are_reported_before_all_pairs_are_looked_at(monk
     monkeypatch.setattr("extrados.model.geometry.solids.contacts.MOST_PAIRS", 100)
     monkeypatch.setattr("extrados.model.geometry.solids.contacts.MOST_NEIGHBOURS", 1)
     stones = [Stone(f"block {k}", [box((0, 0, 0), (1, 1, 1))], 2000.0) for k in range(30)]
-    with pytest.raises(BadGeometry, match="more than 100 pairs, the greatest number considered"):
+    with pytest.raises(BadGeometry, match="more than 100 pairs, the limit of this program"):
         assemble(stones, 1e-4)

@@ -72,8 +72,8 @@ def test_sections_with_joints_of_mortar(make: Any, seed: int | None, within: flo
     assert collapse(section(closed, 2000.0, 1.0)) == pytest.approx(collapse(made), rel=within)
     assert sum(map(signed_area, closed.outlines)) == pytest.approx(sum(map(signed_area, made.outlines)), rel=max(within, 1e-4))
     (said,) = closed.notes()[:1]
-    assert "joints drawn as gaps of 12 " in said and "were closed (mortar_gap 1" in said and "middle of the mortar" in said
-    assert 'for joints of mortar, give mortar_gap = "1' in inspect(drawing, ground, 1e-4).complaints()[0]
+    assert "joints that are drawn as gaps of 12 " in said and "were closed (`mortar_gap` 1" in said and "middle of the mortar" in said
+    assert 'if the joints contain mortar, give mortar_gap = "1' in inspect(drawing, ground, 1e-4).complaints()[0]
 
 
 @pytest.mark.parametrize(("gap", "noise", "within"), [(0.010, 0.0, 1e-9), (0.015, 0.0, 1e-9), (0.010, 3e-4, 2e-3), (0.010, 1e-3, 3.5e-3)])
@@ -86,8 +86,8 @@ def test_a_corner_with_joints_of_mortar(gap: float, noise: float, within: float)
     made = assemble(grown, tolerance)
     assert len(made.a) == 55 and pushed(made, 90.0, 270.0) == pytest.approx(CLEAN, rel=within)
     assert made.mass.sum() == pytest.approx(assemble(corner()).mass.sum(), rel=1e-3)
-    assert notes[0].startswith("48 joints drawn as gaps of ") and "The volume of the blocks increased by" in notes[0]
-    with pytest.raises(BadGeometry, match="touches neither"):
+    assert notes[0].startswith("48 joints that are drawn as gaps of ") and "The volume of the blocks increased by" in notes[0]
+    with pytest.raises(BadGeometry, match="touches no other block"):
         assemble(with_closed_joints(stones, 0.5 * gap, tolerance)[0], tolerance)
 
 
@@ -107,4 +107,4 @@ def test_a_deck_of_stones_in_mortar(tmp_path: Path) -> None:
     }
     found = run_analyses(Context(make_deck(tables, tmp_path), threads=1))[0]
     assert found["collapse_acceleration_g"] == pytest.approx(CLEAN[0], rel=1e-6)
-    assert sum("48 joints drawn as gaps of 10 mm were closed" in w for w in found.warnings) == 1
+    assert sum("48 joints that are drawn as gaps of 10 mm were closed" in w for w in found.warnings) == 1

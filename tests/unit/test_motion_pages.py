@@ -62,7 +62,7 @@ def test_milliseconds_are_not_read_as_seconds(tmp_path: Path) -> None:
     found = study(path)
     assert found["pga_time_s"] < 2.0 and any("are in ms" in w for w in found.warnings)
     bare = column_file(tmp_path / "bare.csv", "time", [f"{5 * k}" for k in range(400)])
-    with pytest.raises(RecordError, match=r"bare\.csv:2: the time step is 5 s, .* name their column time_ms"):
+    with pytest.raises(RecordError, match=r"bare\.csv:2: the time step is 5 s, .* name their column `time_ms`"):
         read_record(bare)
 
 
@@ -71,13 +71,13 @@ def test_times_rounded_at_128_hz(tmp_path: Path) -> None:
     path = column_file(tmp_path / "rounded.csv", "time (s)", [f"{k / 128:.3f}" for k in range(1000)])
     record = read_record(path)
     assert record.step == pytest.approx(1 / 128, rel=2e-4) and record.rounded == pytest.approx(1e-3)
-    assert any("are rounded to 1 ms; the program uses their mean step" in w for w in study(path).warnings)
+    assert any("are rounded to 1 ms; the program uses their mean time step" in w for w in study(path).warnings)
     given = study(path, time_step=1 / 128)
     assert given["time_step_s"] == 1 / 128
-    assert any("time_step of the deck is used" in w for w in given.warnings)
-    assert not any("mean step" in w for w in given.warnings)
+    assert any("`time_step` of the deck is used" in w for w in given.warnings)
+    assert not any("mean time step" in w for w in given.warnings)
     wrong = study(path, time_step=0.0079)
-    assert wrong.status == "refused" and "the deck 0.0079 s" in wrong.reason
+    assert wrong.status == "refused" and "the deck gives 0.0079 s" in wrong.reason
     # Several components beside rounded times are columns too.
     rows = [f"{k / 128:.3f} {0.1 * np.sin(k):.5f} {0.1 * np.cos(k):.5f}" for k in range(500)]
     (tmp_path / "two.txt").write_text("time (s) acc1 (g) acc2 (g)\n".replace(" (", "_(") + "\n".join(rows) + "\n")

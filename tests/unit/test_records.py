@@ -87,8 +87,11 @@ def test_units_and_steps_are_required(tmp_path) -> None:
     [
         ({"time_step": 10.0}, r"3000 samples with a step of 10 s last 29990 s; at most 10800 s"),
         ({"time_scale": 1e9}, "last 2.999e.10 s; at most"),
-        ({"resample": 1e-7}, r"a step of 1e-07 s for 29.99 s requires 3e.08 samples, at most 5,000,000"),
-        ({"low_cut": 1e-6}, r"a filter at 1e-06 Hz with its run-in requires 6e.08 samples, at most 5,000,000"),
+        ({"resample": 1e-7}, r"a step of 1e-07 s for 29.99 s requires 3e.08 samples, but at most 5,000,000"),
+        (
+            {"low_cut": 1e-6},
+            r"a filter at 1e-06 Hz, with its padding before and after the motion, requires 6e.08 samples, but at most 5,000,000",
+        ),
         ({"high_cut": 1e-6}, "a filter at 1e-06 Hz"),
     ],
 )

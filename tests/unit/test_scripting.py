@@ -76,7 +76,7 @@ def test_an_object_is_what_a_deck_says() -> None:
         (lambda: extrados.sweep(DECK, over={"structure.thickness": 1.2}), "structure.thickness: expected a list"),
         (
             lambda: extrados.sweep(DECK, over={f"structure.k{k}": [1.0] * 1000 for k in range(5)}),
-            "all combinations of the values are 1,000,000,000,000,000 members, more than the 1,000,000 allowed",
+            "all combinations of the values give 1,000,000,000,000,000 runs, more than the 1,000,000 allowed",
         ),
         (lambda: extrados.sweep(DECK, over={"analysis.sla.events": [1]}), "no analysis 'sla'; its analyses are tilt, rocking"),
     ],
@@ -137,7 +137,7 @@ def test_columns_keep_their_names_whatever_else_is_varied() -> None:
 def test_a_sweep_shows_its_first_members_in_a_notebook() -> None:
     swept = extrados.sweep(DECK, over={"structure.thickness": np.linspace(1.2, 1.8, 14)}, progress=False)
     page = swept._repr_html_()
-    assert page.count("<tr>") == 13 and "2 more members" in page
+    assert page.count("<tr>") == 13 and "2 more runs" in page
     assert "structure.thickness [m]" in page and "tilt.verdict.outcome" in page and "rocking.peak_rotation_rad" not in page
 
 

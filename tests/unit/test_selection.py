@@ -124,7 +124,7 @@ def test_a_record_that_cannot_be_read_and_a_count_not_reached_are_stated(suite: 
     assert len(members) == 5
     deck = make_deck({"motion": motion(count=6), "analysis": {"kind": "motion"}}, suite)
     stated = " ".join(run_analyses(Context(deck))[0].warnings)
-    assert "6 records were requested, and 5 are selected; 1 record(s) cannot be read: " in stated and "r0.AT2" in stated
+    assert "6 records were requested, but only 5 are selected; 1 record(s) cannot be read: " in stated and "r0.AT2" in stated
     assert not any("requested" in note for note in members_of(suite, count=5)[1].notes)
 
 

@@ -249,7 +249,7 @@ TETRAHEDRON = ("tetra", [[0, 1, 5, 30]])
 WRONG = {
     "nowhere": ("the coordinates of node 13 are not finite", {12: [np.nan, 0, 1]}, [], []),
     "infinitely far": ("the coordinates of node 13 are not finite", {12: [np.inf, 0, 1]}, [], []),
-    "beyond reason": ("node 13 lies 1e[+]308 m from the origin; expected at most", {12: [1e308, 0, 1]}, [], []),
+    "beyond reason": ("node 13 is 1e[+]308 m from the origin, but at most", {12: [1e308, 0, 1]}, [], []),
     "an orphan nowhere": ("the coordinates of node 46 are not finite", {}, [[0, 0, np.nan]], []),
     "a node twice": ("quadrilateral of nodes 1, 2, 2, 7, .* has the same node twice; expected 4", {}, [], [[0, 1, 1, 6]]),
     "no area": ("quadrilateral of nodes 1, 2, 3, 4, .* has no area", {}, [], [[0, 1, 2, 3]]),

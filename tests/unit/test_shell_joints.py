@@ -120,7 +120,7 @@ def test_a_flange_behind_a_joint(tmp_path):
 @pytest.mark.parametrize(
     "old, new, line, words",
     [
-        ("tension = TENSION", "tension = 0", "joints.tension", "joint 'bed 1' has no tension"),
+        ("tension = TENSION", "tension = 0", "joints.tension", "joint 'bed 1' has no `tension`"),
         ("shear_energy = 10", "", "joints.shear_energy", "joint 'bed 1' has a cohesion but no shear_energy"),
         ("beds = [{ z = HEIGHT }]", "beds = [{ z = 1.0 }]", "structure", "is not below the top of a storey"),
         ("beds = [{ z = HEIGHT }]", "beds = [{}, {}]", "structure", "bed 1 has the same height"),

@@ -176,7 +176,7 @@ def test_stored_damage_holds_the_strength_of_each_crack() -> None:
 @pytest.mark.parametrize(
     ("values", "words"),
     [
-        ({"tensile_strength_parallel": 1e6}, "requires tensile_strength"),
+        ({"tensile_strength_parallel": 1e6}, "requires `tensile_strength`"),
         ({"shear_strength": 1e5}, "shear_strength needs"),
         ({"bed_angle": 10.0}, "bed_angle needs"),
         ({"tensile_strength": 1e5, "fracture_energy": 10.0, "tensile_strength_parallel": 4e5, "shear_strength": 2.1e5}, "the square root"),

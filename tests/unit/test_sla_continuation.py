@@ -320,9 +320,21 @@ def test_a_step_that_passes_over_a_snap_back_is_stated() -> None:
 
 
 def test_an_arc_length_follows_the_curve_of_displacement_control() -> None:
-    """A pier that does not snap back has the same curve."""
-    curves = [run_deck(pier(0.1, 50.0, 0.25, target_displacement=3e-3, continuation=how)) for how in ("newton", "dissipation")]
+    """A pier that does not snap back has the same curve, also by steps without events from the first load on."""
+    ways = ("newton", "dissipation", "steps")
+    curves = [run_deck(pier(0.1, 50.0, 0.25, target_displacement=3e-3, continuation=how)) for how in ways]
     at = np.linspace(0.2e-3, 3e-3, 15)
-    one, two = (np.interp(at, array(c, "envelope_displacement"), array(c, "envelope_load")) for c in curves)
+    one, two, three = (np.interp(at, array(c, "envelope_displacement"), array(c, "envelope_load")) for c in curves)
     assert two == pytest.approx(one, rel=0.02)
+    assert three == pytest.approx(one, rel=0.02)
+    assert array(curves[2], "event_step").all()
     check_steps(curves[1])
+    check_steps(curves[2])
+
+
+def test_steps_that_a_law_does_not_admit_are_stated() -> None:
+    """Fixed cracks have no law of steps: the run consists of events, and a warning says so."""
+    deck = pier(0.1, 50.0, 0.25, target_displacement=1e-4, continuation="steps", cracking="orthotropic")
+    result = run_deck(deck)
+    assert not array(result, "event_step").any()
+    assert any("`continuation` = steps had no effect" in text for text in result.warnings)

@@ -318,8 +318,8 @@ def test_no_sliding_keeps_what_hinges() -> None:
 def test_bad_joints_are_refused() -> None:
     arch = STRUCTURES["arch"]
     for joints, word in (
-        ({"cohesion": 1e5}, "no shear_energy"),
-        ({"tension": 1e5}, "no fracture_energy"),
+        ({"cohesion": 1e5}, "no `shear_energy`"),
+        ({"tension": 1e5}, "no `fracture_energy`"),
         ({"compressive_strength": 1e6}, "require each other"),
         ({"cohesion": 1e6, "shear_energy": 1e-3, "normal_stiffness": 1e9}, "snaps back"),
     ):

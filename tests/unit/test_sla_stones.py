@@ -235,7 +235,7 @@ def test_the_row_carries_the_stiffness_of_the_joint() -> None:
 
 
 def test_what_does_not_fit_is_refused() -> None:
-    assert "no fracture_energy" in sla(STRUCTURES["arch"], joints={"tension": 1e5}).reason
+    assert "no `fracture_energy`" in sla(STRUCTURES["arch"], joints={"tension": 1e5}).reason
     assert "isotropic" in sla(STRUCTURES["arch"], cracking="isotropic").reason
     assert "crack_closure" in sla(STRUCTURES["arch"], crack_closure=False).reason
     assert "joint_thickness" in sla(STRUCTURES["arch"], mesh={"joint_thickness": 0.5}).reason

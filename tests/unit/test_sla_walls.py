@@ -249,7 +249,7 @@ def test_a_force_between_nodes_is_shared() -> None:
 
 def test_a_node_that_is_not_where_it_was_requested_is_reported() -> None:
     data = wall(events=5, control=[{"x": 0.0123, "y": 0.0, "direction": "x"}])
-    assert any("no node lies at x 0.0123 m" in w for w in run_deck(data).warnings)
+    assert any("no node is at x 0.0123 m" in w for w in run_deck(data).warnings)
 
 
 def test_what_cracks_keep_is_never_the_peak() -> None:

@@ -158,7 +158,7 @@ def test_the_thrust_on_the_ground_of_one_block_is_its_push() -> None:
     assert "from 0 kN to 0 kN, 0 kN in the most central state" in run(block, kind="thrust", direction=30.0).answer  # no rounding
     assert run(PRISM, kind="thrust", gamma=0.1).status == "ok"  # a round column, along +x by default
     refused = run(block, kind="thrust", direction=30.0, section=[{"name": "a", "joints": ["ground"]}])
-    assert refused.status == "refused" and "give toward" in refused.reason
+    assert refused.status == "refused" and "give the key `toward`" in refused.reason
 
 
 @pytest.mark.parametrize(

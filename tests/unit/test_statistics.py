@@ -171,3 +171,10 @@ def test_bootstrap_covers_and_repeats() -> None:
     assert (one.median[0], one.dispersion[0]) == pytest.approx((alone.median, alone.dispersion), rel=1e-9)
     low, high = one.band(np.array([0.6]))
     assert low[0] < 0.5 < high[0] and high[0] - low[0] < 0.2
+
+
+@pytest.mark.parametrize("hits", [(5, 5, 5), (5, 5, 5.0001), (6, 5, 5)])
+def test_a_probability_that_does_not_increase_has_no_curve(hits: tuple[float, ...]) -> None:
+    """Equal shares at all levels once gave a median of 0 and a curve of 1 everywhere."""
+    with pytest.raises(NoFit, match="does not increase"):
+        fit_stripes(np.array([0.4, 0.8, 1.2]), np.array(hits), np.array([6, 6, 6]))

@@ -88,7 +88,7 @@ def test_a_drawing_that_shows_nothing_says_why(tmp_path: Path) -> None:
 
     path = sketch(tmp_path / "frozen.dxf", draw)
     refused = run({"file": path.name}, tmp_path)
-    assert refused.status == "refused" and "does not display it: 1 of layer 'STONE' (frozen)" in refused.reason
+    assert refused.status == "refused" and "does not display are not read: 1 of layer 'STONE' (frozen)" in refused.reason
 
 
 def test_hidden_ground_and_an_outline_with_a_hidden_opening(tmp_path: Path) -> None:

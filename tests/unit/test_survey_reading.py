@@ -182,7 +182,7 @@ def test_georeferenced(tmp_path: Path) -> None:
     far = np.array([431250.0, 5062480.0])
     blocks = [Polygon(b.name, b.points + far) for b in (box("a", 0, 0), box("b", 0, 1))]
     here, there = run({"block": rows(box("a", 0, 0), box("b", 0, 1))}), {"block": rows(*blocks)}
-    assert "origin = [431250, 5062480] would move it near" in run(there).reason
+    assert "origin = [431250, 5062480] would move the drawing near" in run(there).reason
     beyond = run({"block": rows(*(Polygon(b.name, b.points + 1e14) for b in blocks))}).reason
     assert "farther than" in beyond and "origin =" not in beyond  # in a file it may be 1e308
     for origin in (far.tolist(), "lower-left"):

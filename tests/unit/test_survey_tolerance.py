@@ -29,7 +29,7 @@ def test_a_gap_changes_no_capacity_in_silence() -> None:
         assert words in told
     mended = run({"block": leaning(3e-4), "contact_tolerance": "0.31 mm"})
     assert mended["collapse_acceleration_g"] == pytest.approx(closed["collapse_acceleration_g"], rel=1e-3)
-    assert "closed within contact_tolerance" in mended.warnings[0]
+    assert "closed within `contact_tolerance`" in mended.warnings[0]
     assert f"the collapse acceleration to +x is {mended['collapse_acceleration_g']:.4f} g" in both
     # A mended joint lies midway between the two faces.
     assert mended["joint_p"][:, 0].tolist().count(1.00015) == 1

@@ -173,7 +173,7 @@ def test_conditions_of_the_verdict(factor, ended, violated, outcome):
 
 def test_a_capacity_that_the_strength_ratio_limits_is_said_so():
     limited = made(2.0)
-    assert "zeta_E 2, limited by q* (1.5; at most 3); peak ground" in limited.told(limited.checks[0])
+    assert "zeta_E 2, governed by q* (1.5; at most 3); peak ground" in limited.told(limited.checks[0])
 
 
 @pytest.mark.parametrize(

@@ -38,7 +38,7 @@ def read_table(model: type[Table], data: dict[str, Any]) -> Any:
         where = ".".join(str(p) for p in first["loc"])
         text = str(first.get("ctx", {}).get("error", first["msg"]))
         if first["type"] == "extra_forbidden":
-            text = f"this key is unknown; the keys are {', '.join(model.model_fields)}"
+            text = f"unknown key; the keys are {', '.join(model.model_fields)}"
         raise BadGeometry(f"{where}: {text}" if where else text) from None
 
 

@@ -67,7 +67,7 @@ def refuse_memory(needed: float, what: str, cure: str, key: Key) -> None:
     there = room.total()
     if needed > SHARE * there:
         raise Refused(
-            (f"{what} requires about {needed / 1000000000.0:.3g} GB of memory, but this machine has {there / 1000000000.0:.3g} GB; {cure}"),
+            f"{what} requires about {needed / 1000000000.0:.3g} GB of memory, but this machine has {there / 1000000000.0:.3g} GB; {cure}",
             key,
         )
 

@@ -37,7 +37,7 @@ class Animated(Table):
     @model_validator(mode="after")
     def _moves(self) -> "Animated":
         if "animation_speed" in self.model_fields_set and self.animation == "none":
-            raise ValueError('animation_speed requires animation = "gif" or "mp4"')
+            raise ValueError('`animation_speed` requires animation = "gif" or "mp4"')
         return self
 
 

@@ -20,9 +20,7 @@ def explore(
     ] = "127.0.0.1",
     standalone: Annotated[
         Path | None,
-        typer.Option(
-            help=("write a page that works without a server to this file, and exit; its sliders change one dimension and the tilt")
-        ),
+        typer.Option(help="write a page that works without a server to this file, and exit; its sliders change one dimension and the tilt"),
     ] = None,
     pupils: Annotated[int, typer.Option(min=1, max=60, help="for --class: greatest number of pupils at the same time")] = 30,
 ) -> None:
@@ -102,7 +100,7 @@ def import_plan(
     thickness: Annotated[
         float | None,
         typer.Option(
-            "--thickness", help=("thickness [m] of walls that are drawn as single lines (axes); default: the lines are faces of walls")
+            "--thickness", help="thickness [m] of walls that are drawn as single lines (axes); default: the lines are faces of walls"
         ),
     ] = None,
     storeys: Annotated[str, typer.Option("--storeys", help="heights [m] of the storeys from the ground up, such as 3.0,2.8")] = "3.0",

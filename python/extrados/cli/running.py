@@ -76,10 +76,8 @@ def motion(
     columns: Annotated[
         str | None,
         typer.Option(
-            help=(
-                "meaning of several columns in a file without times. series: the rows are one series, row after "
-                "row; components: each column is one component (choose with --channel)"
-            )
+            help="meaning of several columns in a file without times. series: the rows are one series, row after "
+            "row; components: each column is one component (choose with --channel)"
         ),
     ] = None,
     baseline: Annotated[str, typer.Option(help="baseline correction: none, mean, linear, quadratic or cubic")] = "none",
@@ -203,9 +201,7 @@ def _motion_page(result: "Result") -> None:
     for k, impulse in enumerate(result.results["impulses"], start=1):
         table.add_row(
             f"impulse {k}",
-            (
-                f"{impulse['amplitude_g']:+.4g} g, period {impulse['period_s']:.4g} s, from {impulse['start_s']:.3f} s on, "
-                f"goodness of fit {impulse['goodness_of_fit']:.2f}"
-            ),
+            f"{impulse['amplitude_g']:+.4g} g, period {impulse['period_s']:.4g} s, from {impulse['start_s']:.3f} s on, "
+            f"goodness of fit {impulse['goodness_of_fit']:.2f}",
         )
     out_console.print(table)

@@ -15,7 +15,7 @@ def report(
     pdf: Annotated[bool | None, typer.Option(help="also write report.pdf; default: only for a run with an assessment")] = None,
     template: Annotated[
         Path | None,
-        typer.Option(help=("file report.toml with the layout of an office: logo, colour, title block, order and choice of sections")),
+        typer.Option(help="file report.toml with the layout of an office: logo, colour, title block, order and choice of sections"),
     ] = None,
     language: Annotated[
         str | None, typer.Option(help="language of the report: en, it, es, fr or de; default: that of the template, or that of the deck")

@@ -181,6 +181,7 @@ class Model(Owner):
             int(behaviour.closure),
             int(behaviour.most_changes),
             float(behaviour.floor),
+            int(behaviour.extent),
         )
         check(status, "model")
         super().__init__(handle)

@@ -296,13 +296,15 @@ Group = Plane | Bars | Joints | Springs
 @dataclass(frozen=True)
 class Behaviour:
     """Of cracked material: `cracking` orthotropic (fixed), rotating or isotropic; shear `retention` constant, None for thesis Eq. 4.11; `closure`
-    with at most `most_changes` openings and closings of a crack; stiffness `floor` left after the last tooth."""
+    with at most `most_changes` openings and closings of a crack; stiffness `floor` left after the last tooth; `extent`: crack bands of
+    quadrilaterals are their extents across the crack."""
 
     cracking: str = "orthotropic"
     retention: float | None = None
     closure: bool = False
     most_changes: int = 10
     floor: float = 1e-6
+    extent: bool = False
 
 
 @dataclass

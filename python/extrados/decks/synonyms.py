@@ -31,7 +31,7 @@ SYNONYMS: tuple[Synonym, ...] = (
     ),
     _line(
         "span, clear span, opening width",
-        "for a round arch, the span is 2 (radius - thickness / 2) sin(embrace / 2), reported as clear_span_m",
+        "for a round arch, the span is 2 (radius - thickness / 2) sin(embrace / 2), reported as `clear_span_m`",
         "arch.radius arch.embrace pointed-arch.span spans.span results.tilt.clear_span_m",
         "limit.md",
     ),
@@ -294,7 +294,7 @@ SYNONYMS: tuple[Synonym, ...] = (
     ),
     _line(
         "safety factor, geometric safety factor, factor of safety, margin, demand capacity ratio, dcr",
-        ("capacity divided by demand, in every verdict; the geometric safety factor says how much thinner the structure could be"),
+        "capacity divided by demand, in every verdict; the geometric safety factor says how much thinner the structure could be",
         "thrust results.tilt.geometric_safety_factor results.verdict",
         "limit.md",
     ),

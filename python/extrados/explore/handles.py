@@ -236,7 +236,7 @@ def _brickwork(s: Any, _: Assembly) -> Iterator[Handle]:
     wide, high = s.units * s.unit_length, s.courses * s.unit_height
     yield _length(
         "unit_length",
-        ("Length of a unit (brick or block). The handle changes the length of the wall; the number of units stays the same"),
+        "Length of a unit (brick or block). The handle changes the length of the wall; the number of units stays the same",
         wide,
         0.5 * high,
         s.unit_length,

@@ -201,7 +201,7 @@ def cannot_stand(limit: LimitAnalysis) -> CannotStand:
     velocity[:, :2] *= assembly.size
     fastest = assembly.block_names[int(np.hypot(velocity[:, 0], velocity[:, 1]).argmax())]
     return CannotStand(
-        (f"{why_not(limit)}; certificate: a mechanism, fastest at {fastest}, in which the loads do positive work and no joint resists"),
+        f"{why_not(limit)}; certificate: a mechanism, fastest at {fastest}, in which the loads do positive work and no joint resists",
         velocity,
     )
 

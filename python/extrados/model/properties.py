@@ -25,7 +25,7 @@ class Material(Table):
     fracture_energy: Energy | None = key(None, "fracture energy Gf: energy of a crack for each unit of its area", gt=0)
     tensile_strength_parallel: Stress | None = key(
         None,
-        ("tensile strength along the bed joints; `tensile_strength` is then the strength across the bed joints"),
+        "tensile strength along the bed joints; `tensile_strength` is then the strength across the bed joints",
         source="Lourenco, de Borst and Rots (1997)",
         gt=0,
     )
@@ -34,10 +34,8 @@ class Material(Table):
     )
     shear_strength: Stress | None = key(
         None,
-        (
-            "for masonry with bed joints: strength under pure shear along the bed joints. Default and "
-            "greatest value: the square root of the product of both tensile strengths"
-        ),
+        "for masonry with bed joints: strength under pure shear along the bed joints. Default and "
+        "greatest value: the square root of the product of both tensile strengths",
         gt=0,
     )
     bed_angle: Angle = key(0.0, "angle from the x axis to the bed joints, counter-clockwise", ge=-180, le=180)
@@ -47,20 +45,15 @@ class Material(Table):
     compressive_strength: Stress | None = key(None, "compressive strength; without this value, the masonry does not crush", gt=0)
     compressive_strength_parallel: Stress | None = key(
         None,
-        (
-            "compressive strength along the bed joints; `compressive_strength` is then the strength across "
-            "the bed joints (criterion of Hill)"
-        ),
+        "compressive strength along the bed joints; `compressive_strength` is then the strength across the bed joints (criterion of Hill)",
         source="Lourenco, de Borst and Rots (1997)",
         gt=0,
     )
     compressive_coupling: float = key(
         -1.0,
-        (
-            "coupling of the compression along and across the bed joints: b in the criterion (sx/fx)^2 + b "
-            "sx sy / (fx fy) + (sy/fy)^2 + c t^2 / (fx fy) = 1. sx, sy: stresses along and across the bed "
-            "joints; t: shear stress; fx, fy: compressive strengths; c: `compressive_shear`"
-        ),
+        "coupling of the compression along and across the bed joints: b in the criterion (sx/fx)^2 + b "
+        "sx sy / (fx fy) + (sy/fy)^2 + c t^2 / (fx fy) = 1. sx, sy: stresses along and across the bed "
+        "joints; t: shear stress; fx, fy: compressive strengths; c: `compressive_shear`",
         source="-1.05 of Page's panels, Lourenco (1996), from memory",
         gt=-2,
         lt=2,
@@ -73,16 +66,13 @@ class Material(Table):
         le=20,
     )
     crushing_energy: Energy | None = key(
-        None, ("crushing energy Gc per area; sequentially linear analysis includes crushing only if this value is given"), gt=0
+        None, "crushing energy Gc per area; sequentially linear analysis includes crushing only if this value is given", gt=0
     )
     crushing: Literal["linear", "exponential", "hordijk"] = key("linear", "softening in compression")
     lateral_reduction: bool = key(
         False,
-        (
-            "whether lateral compression reduces the tensile strength ft: s1/ft - s2/fc <= 1 (s1, s2: "
-            "principal stresses, tension positive; fc: compressive strength); requires "
-            "`compressive_strength`"
-        ),
+        "whether lateral compression reduces the tensile strength ft: s1/ft - s2/fc <= 1 (s1, s2: principal stresses, tension positive; "
+        "fc: compressive strength); requires `compressive_strength`",
     )
     confinement: float = key(
         0.0,
@@ -135,11 +125,9 @@ class JointType(Table):
     """Some joints that differ from the others."""
 
     joints: list[str] = key(
-        about=(
-            'names of joints. "ground": all joints at the ground; "rings" and "backing": joints of a bridge; '
-            '"beds" (including those at the ground) and "heads": joints of a wall in running bond. The name '
-            "of a layer of a drawing: the joints between its blocks, or along its lines"
-        ),
+        about='names of joints. "ground": all joints at the ground; "rings" and "backing": joints of a bridge; '
+        '"beds" (including those at the ground) and "heads": joints of a wall in running bond. The name '
+        "of a layer of a drawing: the joints between its blocks, or along its lines",
         min_length=1,
         max_length=10000,
     )
@@ -162,15 +150,12 @@ class Joints(Table):
     cohesion: Stress = key(0.0, "cohesion of the mortar, which is lost at the first failure", ge=0)
     tension: Stress = key(0.0, "tensile strength of the mortar, which is lost at the first failure", ge=0)
     fracture_energy: Energy | None = key(
-        None, ("fracture energy of the mortar per area; sequentially linear analysis requires this value if `tension` is given"), gt=0
+        None, "fracture energy of the mortar per area; sequentially linear analysis requires this value if `tension` is given", gt=0
     )
     shear_energy: Energy | None = key(
         None,
-        (
-            "fracture energy of the cohesion per area (mode II). Sequentially linear analysis requires this "
-            "value if `cohesion` is given; the cohesion then decreases gradually and is not lost at the "
-            "first failure"
-        ),
+        "fracture energy of the cohesion per area (mode II). Sequentially linear analysis requires this value if `cohesion` is given; "
+        "the cohesion then decreases gradually and is not lost at the first failure",
         gt=0,
     )
     compressive_strength: Stress | None = key(
@@ -179,7 +164,7 @@ class Joints(Table):
     crushing_energy: Energy | None = key(None, "crushing energy of the joints per area; requires `compressive_strength`", gt=0)
     softening: Literal["linear", "exponential"] = key(
         "exponential",
-        ("law by which cohesion and tension of the mortar decrease (softening), for sequentially linear analysis"),
+        "law by which cohesion and tension of the mortar decrease (softening), for sequentially linear analysis",
         source="Lourenco 1996",
     )
     normal_stiffness: Stiffness | None = key(
@@ -195,11 +180,8 @@ class Joints(Table):
     )
     damping: Literal["edge", "corner", "rotation", "restitution"] = key(
         "edge",
-        (
-            "impact frequency for which the damping is given: edge, corner or rotation. restitution, for a "
-            "single block: the damping that gives the coefficient of restitution of the block (found by "
-            "trial runs)"
-        ),
+        "impact frequency for which the damping is given: edge, corner or rotation. restitution, for a single block: the damping that "
+        "gives the coefficient of restitution of the block (found by trial runs)",
         source="thesis Eqs 7.13, 7.17-7.20",
     )
     damping_ratio: float = key(
@@ -210,21 +192,18 @@ class Joints(Table):
     )
     restitution: Literal["thesis", "energy-safe", "inelastic"] | Annotated[float, Field(ge=0, le=1)] = key(
         "inelastic",
-        (
-            "rule for impacts during rocking (blocks always use the rule of Housner). inelastic: plastic "
-            "impact with impulses at all joints, and all the energy that remains; thesis: momentum balance "
-            "of the thesis for arches (energy-safe for other sections); energy-safe: projection on the "
-            "mechanism after the impact only. A number is c_v: angular velocity after / before an impact (0 "
-            "to 1)"
-        ),
+        "rule for impacts during rocking (blocks always use the rule of Housner). inelastic: plastic impact with impulses at all "
+        "joints, and all the energy that remains; thesis: momentum balance of the thesis for arches (energy-safe for other sections); "
+        "energy-safe: projection on the mechanism after the impact only. A number is c_v: angular velocity after / before an impact (0 "
+        "to 1)",
         source="Moreau 1988; thesis Eqs 5.3, 6.2, 6.3, B.3",
     )
     energy_ratio: Annotated[float, Field(ge=0, le=1)] | None = key(
-        None, ("for a block, instead of `restitution`: c_E, the ratio of kinetic energy after / before an impact"), source="thesis Eq. 6.2"
+        None, "for a block, instead of `restitution`: c_E, the ratio of kinetic energy after / before an impact", source="thesis Eq. 6.2"
     )
     worn_corners: Length = key(0.0, "radius to which the corners of the blocks are worn", ge=0)
     types: list[JointType] = key(
-        [], ("joints with other values, [[joints.types]]; keys that are not given there keep the values of [joints]"), max_length=1000
+        [], "joints with other values, [[joints.types]]; keys that are not given there keep the values of [joints]", max_length=1000
     )
 
     @model_validator(mode="after")
@@ -252,38 +231,31 @@ class Supports(Table):
     """What the building stands on. Stones stand on the joints to the ground that the structure has."""
 
     stiffness: Stiffness | None = key(
-        None, ("stiffness of the ground per area, in series with the joints on the ground; for `rocking`, these joints are rigid"), gt=0
+        None, "stiffness of the ground per area, in series with the joints on the ground; for `rocking`, these joints are rigid", gt=0
     )
     foundation: Literal["winkler", "two-spring"] = key(
         "winkler",
-        (
-            "for `rocking`: place of the springs of the ground. winkler: springs along the whole base; "
-            "two-spring: one spring under each edge, with half of the stiffness. The springs carry no "
-            "tension"
-        ),
+        "for `rocking`: place of the springs of the ground. winkler: springs along the whole base; two-spring: one spring under each "
+        "edge, with half of the stiffness. The springs carry no tension",
         source="Psycharis and Jennings 1983",
     )
     damping_ratio: Annotated[float, Field(ge=0, le=10)] | None = key(
         None,
-        (
-            "for `rocking`: damping ratio of dashpots in parallel with the springs of the ground, for the "
-            "vertical motion of the whole structure; default: no dashpots"
-        ),
+        "for `rocking`: damping ratio of dashpots in parallel with the springs of the ground, for the "
+        "vertical motion of the whole structure; default: no dashpots",
     )
     abutting_wall: Literal["left", "right"] | None = key(
         None, "side on which a wall abuts: the structure rocks only away from this wall, and rebounds from it"
     )
     rebound: Annotated[float, Field(ge=0, le=1)] | None = key(
         None,
-        (
-            "ratio of angular velocity after / before the rebound from the wall. Default for a block: "
-            "calculated from three impacts (far toe, top at the wall, near toe), which gives an upper bound"
-        ),
+        "ratio of angular velocity after / before the rebound from the wall. Default for a block: "
+        "calculated from three impacts (far toe, top at the wall, near toe), which gives an upper bound",
         source="three balances of angular momentum, derived here",
     )
     held: list[Held] = key(
         [],
-        ("nodes of finite-element meshes that are restrained, [[supports.held]]; default: the bottom edge, or the joints on the ground"),
+        "nodes of finite-element meshes that are restrained, [[supports.held]]; default: the bottom edge, or the joints on the ground",
         max_length=1000,
     )
 
@@ -308,10 +280,8 @@ class Movement(Table):
     dx: Length = key(0.0, "to the right")
     dy: Length = key(
         0.0,
-        (
-            "upward movement; negative is a settlement. In space: movement along y, the second direction in "
-            "plan. With `direction`, a plane section requires `dz` for a settlement"
-        ),
+        "upward movement; negative is a settlement. In space: movement along y, the second direction in "
+        "plan. With `direction`, a plane section requires `dz` for a settlement",
     )
     dz: Length = key(0.0, "in space: upward movement; negative is a settlement")
     turn: Angle = key(0.0, "in a plane section: rotation about the middle of the support, counter-clockwise")

@@ -23,14 +23,12 @@ class Tie(Table):
     ground: Place | None = key(None, "anchorage in the ground: a point that stays fixed when supports move")
     via: list[Place] = key([], "in space: points of the blocks over which a chain runs, in order from start to end", max_length=1000)
     hoop: bool = key(
-        False, ("in space: closed hoop around the convex outline of the structure, at the height z of `start`, like the chain of a dome")
+        False, "in space: closed hoop around the convex outline of the structure, at the height z of `start`, like the chain of a dome"
     )
     bonded: bool = key(
         False,
-        (
-            "for a chain or hoop. true: anchored at each point, so that each segment has its own force; "
-            "false: slides over the points without friction"
-        ),
+        "for a chain or hoop. true: anchored at each point, so that each segment has its own force; "
+        "false: slides over the points without friction",
     )
     start_stone: str | None = key(
         None, "name of the block at `start`; required if this point lies between two blocks or outside all blocks", max_length=80
@@ -40,20 +38,18 @@ class Tie(Table):
     )
     works_in: Literal["tension", "compression", "both"] = key(
         "tension",
-        ("senses in which the tie acts. tension: a tie, slack in compression; compression: a strut, slack in tension; both: a spring"),
+        "senses in which the tie acts. tension: a tie, slack in compression; compression: a strut, slack in tension; both: a spring",
     )
     yield_force: Force | None = key(
         None, "yield force, which remains constant after yielding; without this value, the tie never yields", gt=0
     )
     stiffness: AxialStiffness | None = key(
         None,
-        (
-            "axial stiffness EA/L (force / elongation). Without this value the tie is rigid until it yields; "
-            "limit analysis always assumes a rigid tie"
-        ),
+        "axial stiffness EA/L (force / elongation). Without this value the tie is rigid until it yields; "
+        "limit analysis always assumes a rigid tie",
         gt=0,
     )
-    prestress: Force = key(0.0, ("force in the tie before any load acts, tension positive; a plastic collapse load does not depend on it"))
+    prestress: Force = key(0.0, "force in the tie before any load acts, tension positive; a plastic collapse load does not depend on it")
 
     @model_validator(mode="after")
     def _whole(self) -> "Tie":

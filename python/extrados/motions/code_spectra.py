@@ -139,7 +139,7 @@ def conditional_mean(name: str | Path, folder: Path | None, at: float, accelerat
     period, median, sigma = _columns(name, folder, ("period_s", "sa_g", "sigma_ln")).T
     if not period[0] <= at <= period[-1]:
         raise ValueError(
-            f"conditional_period {at:g} s is outside the table of the spectrum, which covers {period[0]:g} to {period[-1]:g} s"
+            f"`conditional_period` {at:g} s is outside the table of the spectrum, which covers {period[0]:g} to {period[-1]:g} s"
         )
     low, high = max(period[0], 0.01), min(period[-1], 10.0)
     t = np.unique(np.concatenate([period[(period >= low) & (period <= high)], [low, at, high]]))

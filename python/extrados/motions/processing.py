@@ -45,7 +45,7 @@ def drift(acceleration: np.ndarray, step: float) -> tuple[str, str]:
                 f"at the end of the motion, the ground has a velocity of {v:.3g} m/s and a displacement of {d:.3g} m, "
                 f"because the mean acceleration is {mean:.2g} g"
             ),
-            ('The mean acceleration acts on a structure as a sustained load. To remove it, give baseline = "quadratic" or low_cut.'),
+            ('The mean acceleration acts on a structure as a sustained load. To remove it, give baseline = "quadratic" or `low_cut`.'),
         )
     if abs(d) > 0.5 * np.abs(displacement).max(initial=1e-300):
         return (
@@ -69,7 +69,7 @@ def band_pass(acceleration: np.ndarray, step: float, low: float | None, high: fl
     if (low is not None and not 0.0 < low < nyquist) or (high is not None and not 0.0 < high < nyquist):
         raise ValueError(f"corner frequencies of the filter must lie between 0 and {nyquist:g} Hz (half of the sampling rate)")
     if low is not None and high is not None and low >= high:
-        raise ValueError(f"low_cut {low:g} Hz is not below high_cut {high:g} Hz")
+        raise ValueError(f"`low_cut` {low:g} Hz is not below `high_cut` {high:g} Hz")
     if low is None and high is None:
         return acceleration
     kind = "band" if low and high else "high" if low else "low"

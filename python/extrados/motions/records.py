@@ -134,7 +134,7 @@ def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> t
                 f"{name}: the file states a time step of {record.step:g} s, but the deck gives {step:g} s: remove `time_step`"
             )
         notes = [note for note in notes if MEAN_STEP not in note]
-        notes.append(f"{record.name}: the time_step of the deck is used, because the times of the file are rounded")
+        notes.append(f"{record.name}: the `time_step` of the deck is used, because the times of the file are rounded")
     elif record.step is not None:
         step = record.step
     if step is None:

@@ -62,7 +62,7 @@ def make_drive(acceleration: np.ndarray, step: float, low_cut: float) -> Drive:
     frequency domain, and the table is at rest at both ends of the padded motion.
     """
     if not 0.0 < low_cut < 0.5 / step:
-        raise ValueError(f"low_cut is {low_cut:g} Hz, expected above 0 and below {0.5 / step:g} Hz")
+        raise ValueError(f"`low_cut` is {low_cut:g} Hz, expected above 0 and below {0.5 / step:g} Hz")
     pad = int(np.ceil(5.0 / low_cut / step))  # the filter has died out by then
     long = np.pad(acceleration, pad)
     filtered = processing.band_pass(long, step, low_cut, None)

@@ -82,27 +82,25 @@ class Treated(Motion):
     unit: Literal["g", "m/s^2", "cm/s^2", "mm/s^2", "gal", "mg", "in/s^2"] | None = key(None, "unit of the values, if the file gives none")
     columns: Literal["series", "components"] | None = key(
         None,
-        (
-            "meaning of several columns in a file without times. series: the rows are one series, row after "
-            "row; components: each column is one component, chosen by `channel`"
-        ),
+        "meaning of several columns in a file without times. series: the rows are one series, row after "
+        "row; components: each column is one component, chosen by `channel`",
     )
     scale: float = key(1.0, "factor on the acceleration, applied after all other processing")
     time_scale: float = key(1.0, "factor on the time axis; accelerations do not change", gt=0)
     low_cut: Frequency | None = key(None, "lower corner of a zero-phase Butterworth filter", gt=0)
     high_cut: Frequency | None = key(None, "upper corner of a zero-phase Butterworth filter", gt=0)
     baseline: Literal["none", "mean", "linear", "quadratic", "cubic"] = key(
-        "none", ("degree of the polynomial trend of the acceleration that is removed; it is fitted to the velocity")
+        "none", "degree of the polynomial trend of the acceleration that is removed; it is fitted to the velocity"
     )
     resample: Time | None = key(None, "new sampling step", gt=0)
     pga: Acceleration | None = key(
         None,
-        ("scale the motion to this horizontal peak acceleration in the plane of the structure, with one factor for all components"),
+        "scale the motion to this horizontal peak acceleration in the plane of the structure, with one factor for all components",
         gt=0,
     )
     pgv: Velocity | None = key(None, "scale the motion to this peak velocity (with one factor, as for pga)", gt=0)
     arias: Velocity | None = key(None, "scale the motion to this Arias intensity (with one factor, as for pga)", gt=0)
-    sa: Acceleration | None = key(None, "scale the motion to this pseudo-acceleration at sa_period (with one factor, as for pga)", gt=0)
+    sa: Acceleration | None = key(None, "scale the motion to this pseudo-acceleration at `sa_period` (with one factor, as for pga)", gt=0)
     sa_period: Time | None = key(None, "period for sa", gt=0)
     sa_damping: float = key(0.05, "damping ratio for sa", ge=0, le=0.5)
 
@@ -113,7 +111,7 @@ class Treated(Motion):
         if (self.sa is None) != (self.sa_period is None):
             raise ValueError("sa and sa_period go together")
         if self.low_cut is not None and self.high_cut is not None and self.low_cut >= self.high_cut:
-            raise ValueError(f"low_cut {self.low_cut:g} Hz is not below high_cut {self.high_cut:g} Hz")
+            raise ValueError(f"`low_cut` {self.low_cut:g} Hz is not below `high_cut` {self.high_cut:g} Hz")
         return self
 
 
@@ -158,15 +156,12 @@ class Selection(TargetSpectrum):
     greatest_factor: float = key(4.0, "greatest factor on a record", gt=0, le=100)
     flatfile: str | None = key(
         None,
-        (
-            "CSV table (flatfile) with a column `file` and columns with properties of the records, such as "
-            "magnitude, to which `limits` refer"
-        ),
+        "CSV table (flatfile) with a column `file` and columns with properties of the records, such as magnitude, to which `limits` refer",
         min_length=1,
         max_length=1024,
     )
     limits: dict[str, Annotated[list[float], Field(min_length=2, max_length=2)]] = key(
-        {}, ("limits on columns of the flatfile: least and greatest value of each, such as `magnitude = [6, 7.5]`")
+        {}, "limits on columns of the flatfile: least and greatest value of each, such as `magnitude = [6, 7.5]`"
     )
 
     @model_validator(mode="after")
@@ -253,10 +248,8 @@ class Generated(Motion):
     factor: float = key(1.0, 'factor on the amplitudes; with scaling = "thesis", also the unit of the frequency step', gt=0)
     dispersion: float = key(
         0.0,
-        (
-            "scatter of the amplitude from motion to motion: each is multiplied by a lognormal factor with "
-            "median 1, whose logarithm has this standard deviation"
-        ),
+        "scatter of the amplitude from motion to motion: each is multiplied by a lognormal factor with "
+        "median 1, whose logarithm has this standard deviation",
         ge=0,
         le=2,
     )
@@ -267,10 +260,8 @@ class Generated(Motion):
     )
     rise: Time | None = key(
         None,
-        (
-            "width of the rise of the arctangent envelope (default 0.1 s); for other envelopes, time until "
-            "the full amplitude (default 0.15 or 0.2 times t_d)"
-        ),
+        "width of the rise of the arctangent envelope (default 0.1 s); for other envelopes, time until "
+        "the full amplitude (default 0.15 or 0.2 times t_d)",
         gt=0,
     )
     decay: Time | None = key(

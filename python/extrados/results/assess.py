@@ -131,8 +131,8 @@ class Contribution(ResultModel):
     scatter: float = fact("standard deviation of the natural logarithm of the ratio of calculated to measured values")
     margin: float = fact("critical scale factor of the hazard according to this strategy")
     probability: float = fact("probability that the true critical scale factor is below 1")
-    low: float = fact("lower end of the 90 % confidence interval of this probability")
-    high: float = fact("upper end of the 90 % confidence interval of this probability")
+    low: float = fact("lower end of the 90 % confidence interval of `probability`")
+    high: float = fact("upper end of the 90 % confidence interval of `probability`")
     weight: float = fact(
         "weight of this strategy in the overall probability of collapse: its share of the experiments with which the strategies were compared"
     )
@@ -144,8 +144,8 @@ class CollapseInMotion(ResultModel):
     collapsed: int = fact("runs that collapse")
     count: int = fact("runs with a result")
     probability: float = fact("share that collapses")
-    low: float = fact("lower end of the 95 % confidence interval (Wilson score) of this share", source="Wilson 1927")
-    high: float = fact("upper end of the 95 % confidence interval (Wilson score) of this share", source="Wilson 1927")
+    low: float = fact("lower end of the 95 % confidence interval (Wilson score) of the share of runs that collapse", source="Wilson 1927")
+    high: float = fact("upper end of the 95 % confidence interval (Wilson score) of the share of runs that collapse", source="Wilson 1927")
     violated: list[str] = fact("violated assumptions of the rocking analysis in these runs")
 
 
@@ -157,9 +157,8 @@ class CollapseProbability(ResultModel):
 
     in_motion: CollapseInMotion = maybe("probability of collapse by rocking under the motion itself")
     probability: float | None = fact(
-        "probability of collapse if the peak acceleration acts as a constant horizontal acceleration: "
-        "weighted mean over the strategies; 1 if a certificate proves collapse; null if no strategy "
-        "contributes"
+        "probability of collapse if the peak acceleration acts as a constant horizontal acceleration: weighted mean over the "
+        "strategies; 1 if a certificate proves collapse; null if no strategy contributes"
     )
     low: float | None = fact(
         "lowest lower end of the 90 % confidence intervals of all strategies that contribute; null if no strategy contributes"
@@ -177,7 +176,7 @@ class Advice(ResultModel):
     """What to do, by limit analysis: interventions that carry the peak of the hazard as a constant horizontal acceleration."""
 
     target_g: float = fact(
-        ("constant horizontal acceleration that the strengthened building must carry: the peak acceleration of the hazard"), "g"
+        "constant horizontal acceleration that the strengthened building must carry: the peak acceleration of the hazard", "g"
     )
     capacity_g: float | None = fact("capacity of the existing building; null without a result", "g")
     mechanism: str = fact("governing collapse mechanism of the existing building")

@@ -51,10 +51,7 @@ class Checked(KindResults):
     by_default: bool = maybe("whether the deck has no table [code], so that the rules of NTC 2018 are applied")
     clause: str = maybe("clause of the governing check, with edition and equation; empty without a verdict")
     zeta_E: float | None = maybe(
-        (
-            "zeta_E of NTC at SLV: seismic action that the part can carry, divided by the action that the "
-            "code requires; null without a demand"
-        ),
+        "zeta_E of NTC at SLV: seismic action that the part can carry, divided by the action that the code requires; null without a demand",
         source="NTC 2018 8.3",
     )
     nbs_percent: float | None = maybe(
@@ -64,9 +61,8 @@ class Checked(KindResults):
     behaviour_factor: float = maybe("behaviour factor q of the linear check of NTC, and of the demand on a pier")
     bound: Bound = maybe("type of the capacity by the checks: exact, lower bound or upper bound")
     margin_associated: float | None = maybe(
-        "if joints slide: capacity / demand of the governing check with associated (dilatant) friction. "
-        "If this ratio is at least 1 but the check without dilatancy fails, the outcome is open. Null "
-        "without a demand"
+        "if joints slide: capacity / demand of the governing check with associated (dilatant) friction. If this ratio is at least 1 but "
+        "the check without dilatancy fails, the outcome is open. Null without a demand"
     )
     violated: list[str] = maybe(
         "violated assumptions on the unsafe side. If there are any, a satisfied code check gives no verdict: the outcome is open"
@@ -123,9 +119,8 @@ class Checked(KindResults):
                     f"without dilatancy it is not. The outcome is open.{remarks}"
                 )
             return judge(
-                f"{worst.words} governs and is {'satisfied' if holds else 'not satisfied'}, by {name}: demand "
-                f"{worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
-                f"{remarks}",
+                f"{worst.words} governs and is {'satisfied' if holds else 'not satisfied'}, by {name}: demand {worst.demand:.3g}, "
+                f"capacity {worst.capacity:.3g}{unit}.{remarks}",
                 worst.demand,
                 worst.capacity,
                 worst.unit,
@@ -237,7 +232,7 @@ class LocalMechanism(Checked):
         "T_SLV: period 1.68 pi sqrt(d_SLV/a(d_SLV)), for the straight capacity curve", "s", source="Circ. 7/2019 C8.7.1.2.1.8"
     )
     swaying_weight_N: float = fact(
-        ("weight of the kinematic chain: the moving blocks, the loads that move with them, and the masses that push them"), "N"
+        "weight of the kinematic chain: the moving blocks, the loads that move with them, and the masses that push them", "N"
     )
     base_height_m: float = fact("z: height of the mechanism above the foundation; at z = 0 the demand is the ground acceleration", "m")
     building_height_m: float = maybe("H, for a mechanism above the ground: height of the building", "m")
@@ -247,10 +242,8 @@ class LocalMechanism(Checked):
         source="Circ. 7/2019 C7.2.3",
     )
     multiplier_associated: float = maybe(
-        (
-            "if joints slide: alpha_0 with associated (dilatant) friction. The capacity lies between "
-            "`multiplier` (lowest certified state) and this value"
-        ),
+        "if joints slide: alpha_0 with associated (dilatant) friction. The capacity lies between "
+        "`multiplier` (lowest certified state) and this value",
         source="Drucker 1954",
     )
 

@@ -97,10 +97,8 @@ class BlocksRun(KindResults):
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
     collapse_displacement_m: float = fact("displacement of a block that counts as collapse; not applied to a block that only slides", "m")
     peak_displacement_m: float = fact(
-        (
-            "greatest displacement of any block from its position at rest under self-weight, relative to the "
-            "common displacement of the supports"
-        ),
+        "greatest displacement of any block from its position at rest under self-weight, relative to the "
+        "common displacement of the supports",
         "m",
     )
     peak_slip_m: float = fact("greatest slip at a joint that is still in contact", "m")
@@ -113,15 +111,13 @@ class BlocksRun(KindResults):
     slipped_joint: str | None = fact("joint with the greatest ratio of slip to length; null if no joint slides by 1 % of its length")
     off_footing: list[str] = fact("blocks that slid off their footings; only recorded if the deck gives no floor")
     decided_by_last_digits: bool = fact(
-        "whether the response is chaotic. The motion is scaled by 1 + 1e-6: the response is chaotic if "
-        "displacements change by more than 1/100 of the displacement that counts as collapse, or if "
-        "only one of the two runs collapses. If they change by more than 1/1000, scale factors up to 1 "
-        "+ 1e-4 are tried too. False if this was not checked"
+        "whether the response is chaotic. The motion is scaled by 1 + 1e-6: the response is chaotic if displacements change by more "
+        "than 1/100 of the displacement that counts as collapse, or if only one of the two runs collapses. If they change by more than "
+        "1/1000, scale factors up to 1 + 1e-4 are tried too. False if this was not checked"
     )
     perturbation_growth: float | None = fact(
-        "growth of a perturbation, if the motion is scaled by 1 + 1e-6: greatest change of a "
-        "displacement before collapse, divided by 1e-6 and by the displacement that counts as collapse; "
-        "null if this was not checked"
+        "growth of a perturbation, if the motion is scaled by 1 + 1e-6: greatest change of a displacement before collapse, divided by "
+        "1e-6 and by the displacement that counts as collapse; null if this was not checked"
     )
     perturbed_outcome: str | None = fact("outcome under the motion scaled by 1 + 1e-6; null if this was not checked")
     violated: list[str] = fact("violated assumptions of the analysis, one sentence each, for instance a chaotic response")
@@ -129,11 +125,8 @@ class BlocksRun(KindResults):
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
     peak_base_shear_N: float = fact(
-        (
-            "greatest horizontal force of the ground on the blocks over the output times, at the initial "
-            "contacts and at the anchors of ties and dampers. Contacts formed later are not included; a "
-            "warning says if there are any"
-        ),
+        "greatest horizontal force of the ground on the blocks over the output times, at the initial contacts and at the anchors of "
+        "ties and dampers. Contacts formed later are not included; a warning says if there are any",
         "N",
     )
     peak_base_shear_over_weight: float = fact("greatest horizontal force of the ground, divided by the weight of the structure")
@@ -190,9 +183,8 @@ class BlocksRun(KindResults):
             )
         else:
             text = (
-                f"A block moves by {three_figures(1000.0 * most)} mm. This exceeds the displacement that counts "
-                f"as collapse ({three_figures(1000.0 * limit)} mm), but the block neither rotates nor settles as "
-                "in a collapse."
+                f"A block moves by {three_figures(1000.0 * most)} mm. This exceeds the displacement that counts as collapse "
+                f"({three_figures(1000.0 * limit)} mm), but the block neither rotates nor settles as in a collapse."
             )
         if self.slipped_joint is not None:
             text += f" {slip}."
@@ -211,7 +203,9 @@ class DemRun(BlocksRun):
     restitution_housner: float | None = fact(
         "for a block: ratio of angular velocity after / before impact, by the momentum balance", source="Housner 1963"
     )
-    sensitivity: list[Variation] = maybe("further runs with other damping, stiffness or friction", source="thesis Tables 7.1 to 7.7")
+    sensitivity: list[Variation] = maybe(
+        "runs that repeat the analysis with other values of damping, stiffness or friction", source="thesis Tables 7.1 to 7.7"
+    )
     friction_threshold: float | None = maybe("least coefficient of friction at which no joint slides; null if not found")
 
 
@@ -310,7 +304,7 @@ class DemCurve(ResultModel):
     damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact; least value of all joints")
     damping_ratio_edge: float | None = fact("damping ratio (fraction of critical damping) at edge impact; least value of all joints")
     shortest_durations_s: list[float | None] = fact(
-        ("shortest tried duration that causes collapse, at each amplitude; null if no tried duration causes collapse"), "s"
+        "shortest tried duration that causes collapse, at each amplitude; null if no tried duration causes collapse", "s"
     )
 
 
@@ -320,7 +314,7 @@ class CellApart(ResultModel):
     amplitude_g: float = fact("amplitude", "g")
     duration_s: float = fact("duration", "s")
     fails_as_given: bool = fact("whether the solver of the deck predicts collapse")
-    fails_by_the_other: bool = fact("whether the other solver predicts collapse")
+    fails_by_the_other: bool = fact("whether the second solver (the one that the deck does not choose) predicts collapse")
 
 
 class CrossCheck(ResultModel):
@@ -338,23 +332,23 @@ class DemDomain(KindResults):
     direction_deg: float | None = maybe("for solids: direction of the motion in plan, as an angle from +x towards +y", "deg")
     amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
     shortest_durations_s: list[float | None] = fact(
-        ("shortest tried duration that causes collapse, at each amplitude; null if no tried duration causes collapse"), "s"
+        "shortest tried duration that causes collapse, at each amplitude; null if no tried duration causes collapse", "s"
     )
     curves: list[DemCurve] = fact(
         "failure curves with other values of damping, stiffness or friction; the first curve has the values of the deck"
     )
     mode_II_durations_s: list[float | None] | None = maybe(
-        ("shortest duration that causes collapse in the first half cycle, at each amplitude; null if no tried duration does"), "s"
+        "shortest duration that causes collapse in the first half cycle, at each amplitude; null if no tried duration does", "s"
     )
     convergence: Convergence | None = maybe("accuracy of the contact solver over all runs (rigid contacts only)")
     cross_check: CrossCheck | None = maybe("by both solvers")
     energy_residual_ratio: float = fact("error of the energy balance, divided by the total energy exchanged; greatest value of all runs")
     steps: int = fact("time steps of all runs")
     four_hinge_mode_I_durations_s: list[float | None] = maybe(
-        ("for an arch: shortest duration at which the four-hinge mechanism collapses (with or without an impact), at each amplitude"), "s"
+        "for an arch: shortest duration at which the four-hinge mechanism collapses (with or without an impact), at each amplitude", "s"
     )
     four_hinge_mode_II_durations_s: list[float | None] = maybe(
-        ("for an arch: shortest duration at which the four-hinge mechanism collapses without an impact, at each amplitude"), "s"
+        "for an arch: shortest duration at which the four-hinge mechanism collapses without an impact, at each amplitude", "s"
     )
 
     def judged(self, demand: Demand) -> Verdict:

@@ -81,22 +81,19 @@ class FramePush(ResultModel):
     peak_base_shear_N: float = fact("greatest base shear", "N")
     displacement_at_peak_m: float = fact("control displacement there", "m")
     drop_displacement_m: float | None = fact(
-        ("control displacement at which the base shear has decreased by 20 %; null if it does not decrease so far"), "m"
+        "control displacement at which the base shear has decreased by 20 %; null if it does not decrease so far", "m"
     )
     ultimate_displacement_m: float | None = fact(
-        (
-            "ultimate displacement, the least of three: 20 % decrease of the base shear; all piers of one "
-            "storey of a wall at their drift limit; end of the curve without equilibrium beyond a drift "
-            "limit. Null if none is reached"
-        ),
+        "ultimate displacement, the least of three: 20 % decrease of the base shear; all piers of one storey of a wall at their drift "
+        "limit; end of the curve without equilibrium beyond a drift limit. Null if none is reached",
         "m",
     )
     stiffness_N_m: float | None = fact(
-        ("secant stiffness at 10 % of the greatest base shear; null if the curve has no displacement below that load"), "N/m"
+        "secant stiffness at 10 % of the greatest base shear; null if the curve has no displacement below that load", "N/m"
     )
     period_s: float = fact("period of the mode with the greatest participating mass in the direction of the load", "s")
     equivalent_mass_kg: float = fact(
-        ("m*: sum of mass times mode shape over all masses; the mode shape is 1 at the control displacement"), "kg"
+        "m*: sum of mass times mode shape over all masses; the mode shape is 1 at the control displacement", "kg"
     )
     participation_factor: float = fact("Gamma: m* divided by the sum of mass times squared mode shape")
     level_mass_kg: list[float] = fact("mass on each level, from the lowest level upwards", "kg")
@@ -119,17 +116,14 @@ class WallDeflection(ResultModel):
 
     wall: str = fact("its name")
     acceleration_g: float = fact(
-        ("greatest constant acceleration that the wall carries; 0 if the wall has no equilibrium under its weight"), "g"
+        "greatest constant acceleration that the wall carries; 0 if the wall has no equilibrium under its weight", "g"
     )
     deflection_m: float = fact("greatest deflection at this acceleration", "m")
     height_m: float = fact("height above the ground at which the deflection is greatest", "m")
     reached: bool = fact("whether the acceleration decreases with further deflection; if not, the acceleration is a lower bound")
     rigid_acceleration_g: float | None = fact(
-        (
-            "collapse multiplier of the weakest rigid part of the wall above a storey (local-mechanism, "
-            "without confidence factor, same position of the hinge); null if floors restrain the wall, or "
-            "with a warning"
-        ),
+        "collapse multiplier of the weakest rigid part of the wall above a storey (local-mechanism, without confidence factor, same "
+        "position of the hinge); null if floors restrain the wall, or with a warning",
         "g",
     )
     held_at_m: list[float] = fact("heights at which rigid floors or props restrain the wall", "m")
@@ -239,7 +233,7 @@ class FrameFragility(KindResults):
     )
     confidence_factor: float = maybe("confidence factor of the code for the knowledge level")
     design_intensity_g: float = maybe(
-        ("intensity of the median motion at which the building collapses, with all strengths divided by the confidence factor"), "g"
+        "intensity of the median motion at which the building collapses, with all strengths divided by the confidence factor", "g"
     )
     weaker_share: float = maybe(
         "share of the sampled buildings that collapse, under the same motion, at a lower intensity than `code_median_g`"
@@ -259,7 +253,7 @@ class FrameHistory(KindResults):
     stop: str = fact("why it ended")
     end_time_s: float = fact("end of the calculation", "s")
     peak_displacement_m: float = fact(
-        ("greatest displacement of the control level relative to the ground, along the direction of the motion"), "m"
+        "greatest displacement of the control level relative to the ground, along the direction of the motion", "m"
     )
     peak_base_shear_N: float = fact("greatest base shear along the direction of the motion", "N")
     residual_displacement_m: float = fact("at the end", "m")
@@ -268,7 +262,7 @@ class FrameHistory(KindResults):
     failed: list[FailedElement] = fact(
         "elements that exceed their drift limits, in the order in which they reach them, with the control displacement at that instant"
     )
-    period_s: float = fact(("period of the undamaged frame: mode with the greatest participating mass in the direction of the motion"), "s")
+    period_s: float = fact("period of the undamaged frame: mode with the greatest participating mass in the direction of the motion", "s")
     damping: list[float] = fact(
         "Rayleigh damping: factor of the mass matrix [1/s], and factor of the tangent stiffness of the last step [s]"
     )

@@ -134,17 +134,15 @@ class NonDilatant(ResultModel):
     )
     starts_g: list[float] = fact("collapse load found from each starting point; the lowest is the result", "g")
     spread_g: float = fact(
-        ("difference between the highest and the lowest collapse load found; collapse states without dilatancy are not unique"), "g"
+        "difference between the highest and the lowest collapse load found; collapse states without dilatancy are not unique", "g"
     )
     certified: bool = fact(
         "whether the certificate is satisfied, recalculated independently of the solver: equilibrium, "
         "shear force |s| at most friction mu N, and zero gap"
     )
     zero_gap_g: float = fact(
-        (
-            "gap: collapse acceleration minus (work of friction minus work of the weight), per unit of work "
-            "of the load; zero if forces and motion belong to the same state"
-        ),
+        "gap: collapse acceleration minus (work of friction minus work of the weight), per unit of work "
+        "of the load; zero if forces and motion belong to the same state",
         "g",
     )
     equilibrium_residual: float = fact("greatest unbalanced force on a block (or moment divided by the size), divided by the total load")
@@ -152,9 +150,8 @@ class NonDilatant(ResultModel):
     tension_residual: float = fact("greatest tension (or compression beyond the strength), divided by the total load")
     overlap_residual: float = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest joint")
     complementarity_residual: float = fact(
-        "error of complementarity: force and motion at the same joint (a joint that is compressed and "
-        "opens, or that sticks and slides). The lesser of force and motion counts at each joint; the "
-        "value is the greatest of all joints"
+        "error of complementarity: force and motion at the same joint (a joint that is compressed and opens, or that sticks and "
+        "slides). The lesser of force and motion counts at each joint; the value is the greatest of all joints"
     )
     work_residual: float = fact(
         "error of the work balance (work of the load minus work of weight and friction), divided by the work of the load"
@@ -181,24 +178,18 @@ class Tilt(KindResults):
     )
     dilating_joints_opposite: list[int] = maybe("joints in compression that slide in the collapse mechanism towards -x")
     collapse_acceleration_non_associated_g: float = maybe(
-        (
-            "collapse acceleration towards +x for sliding without dilatancy: the lowest of the certified "
-            "states that were found. It is one value of an interval whose upper end is the associated value"
-        ),
+        "collapse acceleration towards +x for sliding without dilatancy: the lowest of the certified "
+        "states that were found. It is one value of an interval whose upper end is the associated value",
         "g",
         source="Ferris and Tin-Loi 2001",
     )
     collapse_acceleration_non_associated_opposite_g: float = maybe("the same to -x", "g")
     collapse_acceleration_load_path_g: float = maybe(
-        (
-            "design value of the collapse acceleration towards +x, if joints slide: the lowest of the load "
-            "paths with elastic joints and three stiffness ratios"
-        ),
+        "design value of the collapse acceleration towards +x, if joints slide: the lowest of the load "
+        "paths with elastic joints and three stiffness ratios",
         "g",
-        source=(
-            "collapse acceleration with elastic-frictional joints without dilatancy (incremental return "
-            "mapping); the certificate is the same as in `non_dilatant`"
-        ),
+        source="collapse acceleration with elastic-frictional joints without dilatancy (incremental return "
+        "mapping); the certificate is the same as in `non_dilatant`",
     )
     collapse_acceleration_load_path_opposite_g: float = maybe("the same to -x", "g")
     load_paths: list[LoadPath] = maybe("load paths towards +x, one for each ratio of joint stiffness")
@@ -218,17 +209,13 @@ class Tilt(KindResults):
     ties: list[TieForce] = maybe("forces of the ties at collapse")
     ties_opposite: list[TieForce] = maybe("forces of the ties at collapse under load towards -x")
     thrust_min_N: float = maybe(
-        (
-            "minimum horizontal thrust of the first arch under vertical loads only: at its left springing "
-            "or, for an arch with ties, at its crown"
-        ),
+        "minimum horizontal thrust of the first arch under vertical loads only: at its left springing "
+        "or, for an arch with ties, at its crown",
         "N",
     )
     thrust_max_N: float = maybe(
-        (
-            "maximum horizontal thrust of the first arch under vertical loads only: at its left springing "
-            "or, for an arch with ties, at its crown"
-        ),
+        "maximum horizontal thrust of the first arch under vertical loads only: at its left springing "
+        "or, for an arch with ties, at its crown",
         "N",
     )
     thrusts: dict[str, ChainThrust] = maybe(
@@ -242,9 +229,7 @@ class Tilt(KindResults):
     nave_span_m: float = maybe("clear span of the nave", "m")
     left_aisle_span_m: float = maybe("clear span of the left aisle", "m")
     right_aisle_span_m: float = maybe("clear span of the right aisle", "m")
-    duality_gap: float = fact(
-        ("greatest difference between the lower bound (from equilibrium) and the upper bound (from a mechanism)"), "g"
-    )
+    duality_gap: float = fact("greatest difference between the lower bound (from equilibrium) and the upper bound (from a mechanism)", "g")
     fracture: Fracture = maybe("collapse with the leeward buttress cracked")
     non_dilatant: NonDilatant = maybe("sliding without dilatancy, collapse towards +x: bounds and certificate")
     non_dilatant_opposite: NonDilatant = maybe("sliding without dilatancy, collapse towards -x: bounds and certificate")
@@ -383,10 +368,8 @@ class ThrustLine(ResultModel):
     horizontal_N: float = maybe("horizontal thrust at the left springing of an arch, or at the base of a column of blocks", "N")
     horizontal_kN_per_m: float = maybe("horizontal thrust for each metre of depth", "kN/m")
     crown_N: float = maybe(
-        (
-            "horizontal thrust at the crown of an arch whose voussoirs have ties: the thrust at the left "
-            "springing plus the tie forces. The lines of minimum and maximum thrust then refer to the crown"
-        ),
+        "horizontal thrust at the crown of an arch whose voussoirs have ties: the thrust at the left "
+        "springing plus the tie forces. The lines of minimum and maximum thrust then refer to the crown",
         "N",
     )
     over_weight: float = maybe("horizontal thrust, divided by the weight of the structure")
@@ -410,21 +393,17 @@ class Thrust(KindResults):
     chain: str | None = fact("arch or column of blocks whose minimum and maximum thrust are given; null if there is none")
     admissible_interval_g: list[float] = fact("accelerations between which an admissible thrust line exists", "g")
     geometric_safety_factor: float | None = fact(
-        "geometric safety factor: 1 divided by the least central part of the joints that contains a "
-        "thrust line (found within 0.001), at most 100. Null if not requested, or if a thrust line "
-        "passes within 1 % of the middles of all joints (no horizontal demand)"
+        "geometric safety factor: 1 divided by the least central part of the joints that contains a thrust line (found within 0.001), "
+        "at most 100. Null if not requested, or if a thrust line passes within 1 % of the middles of all joints (no horizontal demand)"
     )
     least_part_of_joints: float = maybe("least central part of the joints that contains a thrust line (found within 0.001)")
     weight_N: float = fact("weight of the structure, with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
     dilating: bool = fact(
-        "whether joints in compression slide in the mechanisms at the ends of `admissible_interval_g`. "
-        "These ends are then upper bounds (dilatant friction), and an admissible line does not exclude "
-        "sliding without dilatancy"
+        "whether joints in compression slide in the mechanisms at the ends of `admissible_interval_g`. These ends are then upper bounds "
+        "(dilatant friction), and an admissible line does not exclude sliding without dilatancy"
     )
-    duality_gap: float = fact(
-        ("greatest difference between the lower bound (from equilibrium) and the upper bound (from a mechanism)"), "g"
-    )
+    duality_gap: float = fact("greatest difference between the lower bound (from equilibrium) and the upper bound (from a mechanism)", "g")
     least: ThrustLine = maybe("the line of least thrust")
     most: ThrustLine = maybe("the line of greatest thrust")
     central: ThrustLine = maybe("most central thrust line; if it is missing, a warning gives the reason")
@@ -452,10 +431,8 @@ class MovingLoad(KindResults):
     collapse_load_N: float = fact("lowest collapse load of all positions; for a train, the total load on the structure at collapse", "N")
     collapse_load_kN_per_m: float = fact("lowest collapse load for each metre of depth", "kN/m")
     worst_place_m: float = fact(
-        (
-            "x of the first axle at the governing position (lowest collapse load); for a train without "
-            "axles, x of the origin of its uniform loads"
-        ),
+        "x of the first axle at the governing position (lowest collapse load); for a train without "
+        "axles, x of the origin of its uniform loads",
         "m",
     )
     worst_place_over_span: float = fact("distance from the left springing to the governing position, divided by the span")
@@ -482,9 +459,8 @@ class MovingLoad(KindResults):
         "before the adequacy factor is calculated"
     )
     permissible_factor: float = maybe(
-        "permissible limit state: greatest multiple of the train (with serviceability and dynamic factors) "
-        "for which a thrust line exists within the permissible stress and the passive pressure of "
-        "service"
+        "permissible limit state: greatest multiple of the train (with serviceability and dynamic factors) for which a thrust line "
+        "exists within the permissible stress and the passive pressure of service"
     )
     permissible_place_m: float = maybe("x of the first axle at the position with the least permissible factor", "m")
     permissible_stress_Pa: float = maybe("permissible compressive stress under service loads", "Pa")
@@ -508,7 +484,7 @@ class MovingLoad(KindResults):
         if self.load_N is None and self.adequacy_factor is not None:
             factored = "" if self.characteristic else "factored "
             return judge(
-                (f"The adequacy factor of the {factored}train is {self.adequacy_factor:.3g} at the most dangerous position.{judged}"),
+                f"The adequacy factor of the {factored}train is {self.adequacy_factor:.3g} at the most dangerous position.{judged}",
                 1.0,
                 self.adequacy_factor,
                 "times the train",
@@ -571,16 +547,14 @@ class MovingSupports(KindResults):
         move = self.movement_at_fall_m
         if move is None:
             return judge(
-                ("The structure stands under the given movements, with open joints. The movement at which it collapses is not calculated."),
+                "The structure stands under the given movements, with open joints. The movement at which it collapses is not calculated.",
                 None,
                 None,
                 "m",
             )
         return judge(
-            (
-                f"The arch follows the movement of its support up to {move:.3g} m ({100.0 * self.movement_at_fall_over_span:.3g} "
-                "% of the span), and then collapses."
-            ),
+            f"The arch follows the movement of its support up to {move:.3g} m ({100.0 * self.movement_at_fall_over_span:.3g} "
+            "% of the span), and then collapses.",
             None,
             move,
             "m",
@@ -599,17 +573,13 @@ class Change(ResultModel):
 
     value: float = fact("value of the varied key, in the unit of the key")
     before: int | Literal["locked"] = fact(
-        (
-            "number of the mechanism that governs below this value of the key; 0: the structure cannot "
-            'stand; "locked": no collapse mechanism exists'
-        ),
+        "number of the mechanism that governs below this value of the key; 0: the structure cannot "
+        'stand; "locked": no collapse mechanism exists',
         name="from",
     )
     after: int | Literal["locked"] = fact(
-        (
-            "number of the mechanism that governs above this value of the key; 0: the structure cannot "
-            'stand; "locked": no collapse mechanism exists'
-        ),
+        "number of the mechanism that governs above this value of the key; 0: the structure cannot "
+        'stand; "locked": no collapse mechanism exists',
         name="to",
     )
     collapse_acceleration_g: float | None = fact("collapse acceleration there", "g")
@@ -625,7 +595,7 @@ class Gap(ResultModel):
 
     value: float = fact("value of the varied key, in the unit of the key")
     status: SectionStatus = fact("cannot-stand (capacity 0, by a certificate), locked (no collapse mechanism), or no-answer (no result)")
-    reason: str = fact("reason; for a structure that cannot stand, the certificate")
+    reason: str = fact("reason for this outcome; for a structure that cannot stand, the certificate")
 
 
 class Sweep(KindResults):

@@ -32,7 +32,7 @@ class DirectedPulse(ResultModel):
     indicator: float = fact("pulse indicator: above 0, the motion is pulse-like", source="Shahi and Baker 2014")
     period_s: float = fact("period of the pulse", "s")
     angle_deg: float = fact(
-        ("angle from the first component to the direction of the pulse (measured like the key `angle` of a record)"), "deg"
+        "angle from the first component to the direction of the pulse (measured like the key `angle` of a record)", "deg"
     )
     pgv_m_s: float = fact("peak velocity of the motion in the direction of the pulse", "m/s")
     pgv_ratio: float = fact("peak velocity of the motion without the pulse, divided by that of the whole motion")
@@ -147,8 +147,8 @@ class ShakeTable(KindResults):
     motion_peak_acceleration_g: float = maybe("greatest acceleration of the motion as given", "g")
     rms_taken_out_ratio: float = maybe("part of the motion that the high-pass filter removes, divided by the motion (root mean squares)")
     use_of_limits: list[UseOfLimits] = maybe("share of each limit of the table that the motion needs, for each mass")
-    time_scale: float = maybe("scale factor of time that gives the best fit")
-    amplitude_factor: float = maybe("scale factor of acceleration that gives the best fit")
+    time_scale: float = maybe("factor on time with which the motion fits the table best")
+    amplitude_factor: float = maybe("factor on acceleration with which the motion fits the table best")
     played_displacement_m: float = maybe("greatest displacement of the scaled motion", "m")
     played_velocity_m_s: float = maybe("greatest velocity so scaled", "m/s")
     played_acceleration_g: float = maybe("greatest acceleration so scaled", "g")

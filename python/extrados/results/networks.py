@@ -24,10 +24,10 @@ class ThrustNetwork(KindResults):
         "lower bound of `least_thrust_N` for all networks on this form diagram; null without a bound", "N"
     )
     greatest_thrust_N: float | None = fact(
-        ("greatest sum of the outward thrusts at all supports; null if no network was found, or if the thrust has no limit"), "N"
+        "greatest sum of the outward thrusts at all supports; null if no network was found, or if the thrust has no limit", "N"
     )
     greatest_thrust_bound_N: float | None = fact(
-        ("upper bound of `greatest_thrust_N` for all networks on this form diagram; null if the thrust has no limit"), "N"
+        "upper bound of `greatest_thrust_N` for all networks on this form diagram; null if the thrust has no limit", "N"
     )
     central_thrust_N: float = fact("sum of the outward thrusts at all supports in the most central network", "N")
     least_part_of_depth: float = fact("least central part of the vertical depth within which a network was found")
@@ -35,36 +35,32 @@ class ThrustNetwork(KindResults):
         "central part of the vertical depth within which no network on this form diagram exists; null without a bound"
     )
     vertical_safety_factor: float | None = fact(
-        "1 divided by the part of the vertical depth that the most central network needs; null without a "
-        "demand. Where surfaces are steep (near the springing of a dome), it exceeds the geometric "
-        "safety factor, which refers to the thickness"
+        "1 divided by the part of the vertical depth that the most central network needs; null without a demand. Where surfaces are "
+        "steep (near the springing of a dome), it exceeds the geometric safety factor, which refers to the thickness"
     )
     load_direction_deg: float = fact("direction of the horizontal load in plan", "deg")
     horizontal_load_g: float | None = fact(
-        (
-            "greatest horizontal load (at the nodes, divided by the weight) that a network carries; null if "
-            "no network was found, or if the load has no limit. With the load at the centroids of the "
-            "blocks, the collapse load can be less"
-        ),
+        "greatest horizontal load (at the nodes, divided by the weight) that a network carries; null if no network was found, or if the "
+        "load has no limit. With the load at the centroids of the blocks, the collapse load can be less",
         "g",
     )
     horizontal_load_bound_g: float | None = fact(
-        ("upper bound of `horizontal_load_g` for all networks on this form diagram; null if the load has no limit"), "g"
+        "upper bound of `horizontal_load_g` for all networks on this form diagram; null if the load has no limit", "g"
     )
     weight_N: float = fact("weight of the structure", "N")
     equilibrium_residual: float = fact("greatest unbalanced force at a node, divided by the weight")
     thickness_m: float = fact("median thickness of the blocks across the branches of the most central network", "m")
     central_outside_m: float = fact(
-        ("greatest distance by which branches with a force leave the blocks between two nodes, in the most central network"), "m"
+        "greatest distance by which branches with a force leave the blocks between two nodes, in the most central network", "m"
     )
     least_outside_m: float | None = fact(
-        ("greatest distance by which branches leave the blocks, in the network of least thrust; null without this network"), "m"
+        "greatest distance by which branches leave the blocks, in the network of least thrust; null without this network", "m"
     )
     greatest_outside_m: float | None = fact(
-        ("greatest distance by which branches leave the blocks, in the network of greatest thrust; null without this network"), "m"
+        "greatest distance by which branches leave the blocks, in the network of greatest thrust; null without this network", "m"
     )
     horizontal_outside_m: float | None = fact(
-        ("greatest distance by which branches leave the blocks, in the network of the greatest horizontal load; null without this network"),
+        "greatest distance by which branches leave the blocks, in the network of the greatest horizontal load; null without this network",
         "m",
     )
     least_friction: float | None = fact(
@@ -81,7 +77,7 @@ class ThrustNetwork(KindResults):
         part = self.least_part_of_depth
         if part > 1.0:
             return judge(
-                (f"No network found on this form diagram lies within the structure: the best one needs {part:.2f} times the depth."),
+                f"No network found on this form diagram lies within the structure: the best one needs {part:.2f} times the depth.",
                 outcome="open",
             )
         violated = []

@@ -54,11 +54,8 @@ class Conditions(ResultModel):
     hinges_elsewhere: int = maybe("for many runs: number of runs in which hinges form outside the rocking mechanism")
     hinges_elsewhere_share: float = maybe("for many runs: share of the runs in which hinges form outside the rocking mechanism")
     energy_astray: float = maybe(
-        (
-            "after a plastic impact at all joints: share of the kinetic energy that does not belong to the "
-            "mechanism in which rocking continues. If this share exceeds 0.2, impacts cause hinges outside "
-            "the mechanism"
-        ),
+        "after a plastic impact at all joints: share of the kinetic energy that does not belong to the mechanism in which rocking "
+        "continues. If this share exceeds 0.2, impacts cause hinges outside the mechanism",
         source="Moreau 1988",
     )
     not_checked: str = fact("conditions that are not checked, with the reason; empty if all are checked")
@@ -87,7 +84,7 @@ class RestraintForces(ResultModel):
         "least moment of an added hinge; positive for counter-clockwise rotation of the first of the two blocks at the joint", "N*m"
     )
     greatest_moment_Nm: float = maybe(
-        ("greatest moment of an added hinge; positive for counter-clockwise rotation of the first of the two blocks at the joint"), "N*m"
+        "greatest moment of an added hinge; positive for counter-clockwise rotation of the first of the two blocks at the joint", "N*m"
     )
     permanent_turn_rad: float = maybe("permanent rotation of an added hinge at the end of the run, by yield", "rad")
 
@@ -136,10 +133,8 @@ class HandOver(ResultModel):
     """The rest of the motion on rigid contacts, from the state in which a condition of the mechanism fails."""
 
     time_s: float = fact(
-        (
-            "time at which the run with rigid contacts takes over, just before a condition is violated; it "
-            "starts from the positions and velocities of the blocks at this time"
-        ),
+        "time at which the run with rigid contacts takes over, just before a condition is violated; it "
+        "starts from the positions and velocities of the blocks at this time",
         "s",
     )
     reason: str = fact("condition that fails, and where")
@@ -196,9 +191,8 @@ class Rocking(KindResults):
     restitution_energy_safe: float = maybe("for an arch: coefficient of restitution by the energy-safe projection")
     restitution_inelastic: float = maybe("for an arch: coefficient of restitution by a plastic impact at all joints", source="Moreau 1988")
     outcomes_by_rule: list[RuleOutcome] = maybe(
-        "outcome by each impact rule, given if the coefficients of restitution c_v of the rules differ "
-        "by a factor of more than 1.3. If a plastic impact is unsafe, an outcome with the energy that "
-        "discrete elements keep is added"
+        "outcome by each impact rule, given if the coefficients of restitution c_v of the rules differ by a factor of more than 1.3. If "
+        "a plastic impact is unsafe, an outcome with the energy that discrete elements keep is added"
     )
     decided_by_last_digits: bool = fact(
         "whether the response is chaotic: a perturbation of the motion by 1e-6 grows by a factor of more "
@@ -280,17 +274,14 @@ class FailureDomain(KindResults):
         "lowest amplitude of the map at which blocks slide, at each duration; null if they slide at no amplitude", "g"
     )
     hinges_elsewhere_from_g: list[float | None] = fact(
-        (
-            "lowest amplitude of the map at which hinges form outside the rocking mechanism, at each "
-            "duration; null if this occurs at no amplitude"
-        ),
+        "lowest amplitude of the map at which hinges form outside the rocking mechanism, at each "
+        "duration; null if this occurs at no amplitude",
         "g",
     )
     conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all pulses of the map")
     handed_over: int = maybe(
-        "number of pulses of the map that were continued with rigid contacts, because joints slide or "
-        "hinges form outside the rocking mechanism; there, the failure curve is accurate to one cell of "
-        "the map"
+        "number of pulses of the map that were continued with rigid contacts, because joints slide or hinges form outside the rocking "
+        "mechanism; there, the failure curve is accurate to one cell of the map"
     )
     amplitudes_by_rule: list[RuleCurve] = maybe(
         "failure curve by each impact rule, given if the coefficients of restitution c_v of the rules differ by a factor of more than 1.3"
@@ -349,10 +340,8 @@ class FailureDomain(KindResults):
             if capacity is not None:
                 word = "stays below" if amplitude < capacity else "reaches"
                 return judge(
-                    (
-                        f"The motion ({amplitude:.3g} g for {duration:.3g} s) {word} the failure curve, which gives {capacity:.3g} g "
-                        "at this duration."
-                    ),
+                    f"The motion ({amplitude:.3g} g for {duration:.3g} s) {word} the failure curve, which gives {capacity:.3g} g "
+                    "at this duration.",
                     amplitude,
                     capacity,
                     "g",
@@ -398,7 +387,7 @@ class FailureCurve(ResultModel):
 
     label: str = fact("difference from the other curves")
     durations_s: list[float] = fact("durations, or periods, of the pulses", "s")
-    amplitudes_g: list[float | None] = fact("lowest amplitude that causes collapse; null if it exceeds the cap of the deck", "g")
+    amplitudes_g: list[float | None] = fact("lowest amplitude that causes collapse; null if it exceeds `max_amplitude`", "g")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     natural_time_s: float = fact("time by which the durations are scaled: sqrt(R/g) for an arch, 1/p for a block", "s")
@@ -411,13 +400,11 @@ class FailureCurve(ResultModel):
     )
     run_outcomes: list[RockingOutcome | None] = fact("for each motion: outcome of the whole motion; null without a result")
     sliding_from_g: list[float | None] = fact(
-        ("lowest tried amplitude (up to the failure curve) at which blocks slide, at each duration; null if they slide at none"), "g"
+        "lowest tried amplitude (up to the failure curve) at which blocks slide, at each duration; null if they slide at none", "g"
     )
     hinges_elsewhere_from_g: list[float | None] = fact(
-        (
-            "lowest tried amplitude (up to the failure curve) at which hinges form outside the rocking "
-            "mechanism, at each duration; null if this occurs at none"
-        ),
+        "lowest tried amplitude (up to the failure curve) at which hinges form outside the rocking "
+        "mechanism, at each duration; null if this occurs at none",
         "g",
     )
     conditions: Conditions = fact("number of points of the curve below which blocks slide, or hinges form outside the rocking mechanism")
@@ -444,11 +431,8 @@ class FailureCurves(KindResults):
         "share of the verdicts by the curves that agree with the run under the whole motion; null without a comparison"
     )
     scaling_misfit: float | None = fact(
-        (
-            "greatest relative difference of amplitude between two curves, with durations divided by the "
-            "natural time and amplitudes by the uplift acceleration; null with one curve, or with curves "
-            "for different trains"
-        ),
+        "greatest relative difference of amplitude between two curves, with durations divided by the natural time and amplitudes by the "
+        "uplift acceleration; null with one curve, or with curves for different trains",
         source="thesis Eq. 5.7",
     )
 
@@ -510,7 +494,7 @@ class Assessment(KindResults):
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
     static_verdict: Literal["stands", "fails"] = fact("outcome if the peak acceleration acts as a constant horizontal acceleration")
-    coefficients: Coefficients = fact("coefficients of the failure curve that is used")
+    coefficients: Coefficients = fact("coefficients of the failure curve with which the impulses are compared")
     coefficients_source: str = fact("source of the impulse")
     coefficients_of_this_arch: Coefficients = fact("coefficients of the failure curve fitted to this structure")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
@@ -522,9 +506,8 @@ class Assessment(KindResults):
     )
     conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, under the whole motion")
     margins_by_rule: dict[str, float | None] = maybe(
-        "safety factor by each impact rule (each with its own fitted curve), given if the coefficients "
-        "of restitution c_v of the rules differ by a factor of more than 1.3; null if no impulse can "
-        "cause collapse"
+        "safety factor by each impact rule (each with its own fitted curve), given if the coefficients of restitution c_v of the rules "
+        "differ by a factor of more than 1.3; null if no impulse can cause collapse"
     )
     margin_conditions: list[str] = fact(
         "assumptions, one sentence each, that hold under the motion but not under the motion times the "

@@ -56,8 +56,8 @@ class SeatMotion(ResultModel):
     slip_m: float = fact("greatest displacement of an end of the floor away from its support on the wall", "m")
     slip_along_m: float = fact("greatest displacement of an end of the floor along its support on the wall", "m")
     slid_off: bool = fact("whether an end of the floor has moved by more than the length of its support")
-    slid_off_displacement_m: float | None = fact("control displacement at which it slid off", "m")
-    slid_off_base_shear_N: float | None = fact("base shear at which it slid off", "N")
+    slid_off_displacement_m: float | None = fact("control displacement at which the floor slid off", "m")
+    slid_off_base_shear_N: float | None = fact("base shear at which the floor slid off", "N")
 
     @property
     def told(self) -> str:
@@ -77,7 +77,7 @@ class Flanges(ResultModel):
     """Walls across the push, at the peak."""
 
     share: float = fact("share of the base shear that the walls parallel to the load do not carry in-plane")
-    uplift_N: float = fact(("vertical force at the feet of the walls perpendicular to the load: tension, and loss of compression"), "N")
+    uplift_N: float = fact("vertical force at the feet of the walls perpendicular to the load: tension, and loss of compression", "N")
     pressure_N: float = fact("compression added to them", "N")
     working: bool = fact("whether the walls perpendicular to the load carry an upward or downward force of more than 1/20 of the weight")
 
@@ -98,7 +98,7 @@ class PushCurve(SlaCurve):
     """The events of one sense of the push; loads are base shears."""
 
     capacity_N: float | None = fact(
-        ("greatest base shear, or the sliding limit if this is lower; null without an equilibrium state, or under a ground motion"), "N"
+        "greatest base shear, or the sliding limit if this is lower; null without an equilibrium state, or under a ground motion", "N"
     )
     sliding_capacity_N: float = maybe("lowest base shear at which a level slides by Coulomb's law", "N")
     sliding_level: str = maybe("the level that slides first")
@@ -107,7 +107,7 @@ class PushCurve(SlaCurve):
     roof_drift: float | None = fact("roof drift: control displacement at the greatest load, divided by the height")
     storey_drifts: list[float | None] = fact("drift of each storey there")
     walls: list[WallShare] = fact("base shear of each wall at the greatest load")
-    flanges: Flanges = maybe("whether the transverse walls (flanges) contribute")
+    flanges: Flanges = maybe("contribution of the transverse walls (flanges) to the base shear")
     first_crack: FirstCrack = maybe("location of the first crack; not given if nothing cracks")
     joints: list[JointMotion] = maybe("greatest opening and sliding of each joint")
     seats: list[SeatMotion] = maybe("load and slip of the floors on their supports; not given without such supports")
@@ -133,7 +133,7 @@ class FrameCapacity(ResultModel):
 
     code: str = fact("code; if it has several formulas, the least strength counts for a pier")
     base_shear_N: float = fact(
-        ("base shear at which the shear force in the weakest storey equals the sum of the strengths of its piers"), "N"
+        "base shear at which the shear force in the weakest storey equals the sum of the strengths of its piers", "N"
     )
     storey: int = fact("the weakest storey, from 1")
 

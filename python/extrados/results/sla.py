@@ -20,7 +20,7 @@ class Bilinear(ResultModel):
     yield_load_N: float = fact("load of the plateau", "N")
     yield_displacement_m: float = fact("displacement at its start", "m")
     ultimate_displacement_m: float = fact(
-        ("ultimate displacement: displacement at which the load has decreased to 80 % of the peak, or the last displacement if it has not"),
+        "ultimate displacement: displacement at which the load has decreased to 80 % of the peak, or the last displacement if it has not",
         "m",
     )
     ductility: float = fact("ultimate over yield displacement")
@@ -40,15 +40,13 @@ class BarForce(ResultModel):
 
     name: str = fact("name of the bar; bars of the wall have numbers as names")
     force_at_greatest_load_N: float | None = fact(
-        (
-            "force of the bar at the greatest load in equilibrium; for an embedded bar, the greatest force "
-            "of its sections; null if this state was not saved"
-        ),
+        "force of the bar at the greatest load in equilibrium; for an embedded bar, the greatest force "
+        "of its sections; null if this state was not saved",
         "N",
     )
     last_force_N: float | None = fact("force of the bar in the last state; for an embedded bar, the greatest force of its sections", "N")
     greatest_force_N: float | None = maybe(
-        ("greatest force in absolute value over all equilibrium states, for a bar that is attached only at its ends"), "N"
+        "greatest force in absolute value over all equilibrium states, for a bar that is attached only at its ends", "N"
     )
     state: Literal["slack", "carries", "yielded"] = fact(
         "state of the bar at the end. slack: no force; carries: loaded, strength not reached; yielded: "
@@ -61,7 +59,7 @@ class SlaCurve(ResultModel):
 
     sense: Literal["+", "-"] = fact("sense of the reference loads")
     peak_load_N: float | None = fact(
-        ("peak load: greatest load in equilibrium, after which the load decreases or a mechanism forms; null without a peak"), "N"
+        "peak load: greatest load in equilibrium, after which the load decreases or a mechanism forms; null without a peak", "N"
     )
     peak_displacement_m: float | None = fact("control displacement at the peak", "m")
     displacement_of_constant_loads_m: float = fact("control displacement under the constant loads only", "m")
@@ -87,23 +85,18 @@ class SlaCurve(ResultModel):
     last_displacement_m: float | None = fact("control displacement of that event", "m")
     energy_residual_ratio: float = fact("error of the energy balance, divided by the work of the loads")
     external_work_J: float | None = fact(
-        ("work of all loads up to the last event in equilibrium, if displacements change linearly between events"), "J"
+        "work of all loads up to the last event in equilibrium, if displacements change linearly between events", "J"
     )
     stored_energy_J: float | None = fact("elastic energy at that event", "J")
     dissipated_energy_J: float | None = fact(
-        (
-            "dissipated energy (with friction) up to the last event in equilibrium; it never decreases. It "
-            "is the work of the loads minus the stored energy, summed from one equilibrium state to the "
-            "next. Events without equilibrium count with the area of their teeth"
-        ),
+        "dissipated energy (with friction) up to the last event in equilibrium; it never decreases. It is the work of the loads minus "
+        "the stored energy, summed from one equilibrium state to the next. Events without equilibrium count with the area of their teeth",
         "J",
     )
     crack_energy_J: float = fact(
-        (
-            "crack energy: area of the saw-tooth teeth that were passed at cracks and joints, in all events. "
-            "It depends on the material laws only (fracture energy). Friction and energy lost between "
-            "states are not included, so it can differ from `dissipated_energy_J`"
-        ),
+        "crack energy: area of the saw-tooth teeth that were passed at cracks and joints, in all events. "
+        "It depends on the material laws only (fracture energy). Friction and energy lost between "
+        "states are not included, so it can differ from `dissipated_energy_J`",
         "J",
     )
     residual_ratio: float | None = fact("greatest measured residual of the equations; null if it was not measured")
@@ -128,28 +121,26 @@ class SlaCurve(ResultModel):
         "the work: greatest value of all states in steps with equilibrium iterations"
     )
     released_energy_J: float = maybe(
-        (
-            "energy released as motion when the load drops to another equilibrium, in the steps with "
-            "equilibrium iterations; part of `dissipated_energy_J`"
-        ),
+        "energy released as motion when the load drops to another equilibrium, in the steps with "
+        "equilibrium iterations; part of `dissipated_energy_J`",
         "J",
     )
     drift_height_m: float = maybe(
-        ("length to which drifts refer: extent of the structure perpendicular to the control displacement (for a wall, its height)"), "m"
+        "length to which drifts refer: extent of the structure perpendicular to the control displacement (for a wall, its height)", "m"
     )
     peak_drift: float | None = maybe("drift at the peak")
     drop_displacement_m: float | None = maybe(
-        ("control displacement at which the envelope of the load has decreased to 80 % of the peak; null if not reached"), "m"
+        "control displacement at which the envelope of the load has decreased to 80 % of the peak; null if not reached", "m"
     )
     drop_drift: float | None = maybe("drift there")
     axial_loss_displacement_m: float | None = maybe(
-        ("last control displacement at which the constant loads are still carried; null if they are carried to the end"), "m"
+        "last control displacement at which the constant loads are still carried; null if they are carried to the end", "m"
     )
     axial_loss_drift: float | None = maybe("drift there")
     seconds_per_event: float = fact("computing time of an event", "s")
     events_of_constant_loads: int = fact("number of events during the application of the constant loads")
     probe_loads_N: list[float | None] = maybe(
-        ("load of the envelope at the displacements given in the deck; null beyond the end of the envelope"), "N"
+        "load of the envelope at the displacements given in the deck; null beyond the end of the envelope", "N"
     )
     initial_stiffness_N_m: float = maybe(
         "stiffness before the first event; not given for a stage that begins with equilibrium iterations", "N/m"

@@ -30,17 +30,11 @@ class Pyramids(ResultModel):
 
     sides: int = fact("sides of the pyramids")
     lower_g: float | None = fact(
-        (
-            "lower bound of the collapse acceleration, with pyramids inscribed in the friction cones; null "
-            "if the structure then cannot stand"
-        ),
+        "lower bound of the collapse acceleration, with pyramids inscribed in the friction cones; null if the structure then cannot stand",
         "g",
     )
     upper_g: float | None = fact(
-        (
-            "upper bound of the collapse acceleration, with pyramids circumscribed about the friction cones; "
-            "null without a collapse mechanism"
-        ),
+        "upper bound of the collapse acceleration, with pyramids circumscribed about the friction cones; null without a collapse mechanism",
         "g",
     )
 
@@ -63,20 +57,17 @@ class SolidNonDilatant(ResultModel):
 
     direction_deg: float = fact("direction of the load in plan", "deg")
     associated_g: float | None = fact(
-        ("upper bound of the collapse acceleration, with dilatant sliding; null without a collapse mechanism"), "g"
+        "upper bound of the collapse acceleration, with dilatant sliding; null without a collapse mechanism", "g"
     )
     load_path_g: float | None = fact("design value: lowest collapse acceleration of the certified load paths; null without one", "g")
     load_paths: list[LoadPath] = fact("load paths of elastic joints, one for each stiffness ratio")
     least_g: float | None = fact(
-        ("lowest collapse acceleration of a certified state, from any initial state of stress (serves as a warning); null without one"), "g"
+        "lowest collapse acceleration of a certified state, from any initial state of stress (serves as a warning); null without one", "g"
     )
     starts_g: list[float] = fact("collapse acceleration of the certified state found from each starting point; the lowest is used", "g")
-    spread_g: float | None = fact("difference between the highest and the lowest collapse acceleration of these states", "g")
+    spread_g: float | None = fact("difference between the highest and the lowest collapse acceleration in `starts_g`", "g")
     zero_gap_g: float | None = fact(
-        (
-            "for the lowest state found: collapse acceleration minus (work of friction minus work of the "
-            "weight), per unit of work of the load"
-        ),
+        "for the lowest state found: collapse acceleration minus (work of friction minus work of the weight), per unit of work of the load",
         "g",
     )
     equilibrium_residual: float | None = fact(
@@ -107,9 +98,7 @@ class SolidTilt(KindResults):
     opening_contacts: list[OpenContact] = fact("contacts that open or slide; the 20 fastest are listed")
     weight_N: float = fact("weight of the structure and of the weights placed on it", "N")
     upper_bound_g: float = fact("upper bound of the collapse acceleration, from the virtual work of the mechanism", "g")
-    duality_gap: float = fact(
-        ("greatest difference between the lower bound (from equilibrium) and the upper bound (from a mechanism)"), "g"
-    )
+    duality_gap: float = fact("greatest difference between the lower bound (from equilibrium) and the upper bound (from a mechanism)", "g")
     equilibrium_residual: float = fact("greatest unbalanced force on a block (or moment divided by the size), divided by the weight")
     friction_residual: float = fact(
         "greatest violation at a corner of a contact (shear above friction, or tension), divided by the weight of the structure"
@@ -120,20 +109,15 @@ class SolidTilt(KindResults):
         "lowest capacity). If there are any, the capacity is an upper bound (dilatant friction)"
     )
     collapse_acceleration_load_path_g: float = maybe(
-        (
-            "design value of the collapse acceleration along the load direction, if contacts slide: the "
-            "lowest of the load paths with elastic joints"
-        ),
+        "design value of the collapse acceleration along the load direction, if contacts slide: the "
+        "lowest of the load paths with elastic joints",
         "g",
     )
     collapse_acceleration_load_path_opposite_g: float = maybe(
         "design value of the collapse acceleration opposite to the load direction, if contacts slide", "g"
     )
     collapse_acceleration_non_associated_g: float = maybe(
-        (
-            "collapse acceleration along the load direction for sliding without dilatancy: the lowest of the "
-            "certified states that were found"
-        ),
+        "collapse acceleration along the load direction for sliding without dilatancy: the lowest of the certified states that were found",
         "g",
     )
     collapse_acceleration_non_associated_opposite_g: float = maybe(
@@ -145,23 +129,20 @@ class SolidTilt(KindResults):
     )
     non_associated_reason: str = maybe("reason why no collapse state without dilatancy is given besides the upper bound")
     collapse_acceleration_face_law_g: float = maybe(
-        (
-            "upper bound along the load direction by the face law (friction and torsion of whole faces under "
-            "uniform pressure). `collapse_acceleration_g` follows the corner law, which allows the pressure "
-            "to concentrate"
-        ),
+        "upper bound along the load direction by the face law (friction and torsion of whole faces under uniform pressure). "
+        "`collapse_acceleration_g` follows the corner law, which allows the pressure to concentrate",
         "g",
         source="after Orduna and Lourenco 2005",
     )
     collapse_acceleration_face_law_opposite_g: float = maybe("upper bound opposite to the load direction by the face law", "g")
     face_law_spread_g: float = maybe(
-        ("scatter of the last iterations of the face law: greatest minus least value (fixed-point iteration)"), "g"
+        "scatter of the last iterations of the face law: greatest minus least value (fixed-point iteration)", "g"
     )
     face_law_reason: str = maybe("reason why the face law gives no value")
     ties: list[TieForce] = maybe("forces of ties, chains and hoops at the collapse acceleration; for bonded ones, of each segment")
     crushing_contacts: int = maybe("contacts that crush in the mechanism; null without a compressive strength")
     collapse_acceleration_dry_g: float = maybe(
-        ('collapse acceleration along the load direction without mortar, given if `mortar` = "ductile"; 0 if the blocks then cannot stand'),
+        'collapse acceleration along the load direction without mortar, given if `mortar` = "ductile"; 0 if the blocks then cannot stand',
         "g",
     )
     collapse_acceleration_dry_opposite_g: float = maybe("collapse acceleration opposite to the load direction without mortar", "g")
@@ -196,7 +177,7 @@ class SectionThrust(ResultModel):
     least_N: float | None = fact("minimum thrust, summed over the contacts; null if the thrust has no minimum", "N")
     central_N: float | None = fact("thrust in the most central state; null without such a state", "N")
     greatest_N: float | None = fact(
-        ("maximum thrust, summed over the contacts; null if the thrust has no maximum, as between rigid supports"), "N"
+        "maximum thrust, summed over the contacts; null if the thrust has no maximum, as between rigid supports", "N"
     )
 
 
@@ -208,9 +189,8 @@ class SolidThrust(KindResults):
     admissible_interval_g: list[float] = fact("accelerations along the load direction between which an admissible state exists", "g")
     sections: list[SectionThrust] = fact("thrust of each section")
     geometric_safety_factor: float | None = fact(
-        "geometric safety factor: 1 divided by the least central part of the contacts in which an "
-        "equilibrium state exists; null if this part is below 1 % (no horizontal demand), or if it was "
-        "not found"
+        "geometric safety factor: 1 divided by the least central part of the contacts in which an equilibrium state exists; null if "
+        "this part is below 1 % (no horizontal demand), or if it was not found"
     )
     least_part_of_joints: float | None = fact("central part of the contacts that the most central state needs")
     required_friction: float | None = fact("greatest coefficient of friction that the most central state needs")
@@ -219,9 +199,8 @@ class SolidThrust(KindResults):
     contacts: int = fact("polygons along which they touch")
     weight_N: float = fact("weight of the structure and of the weights placed on it", "N")
     dilating: bool = fact(
-        "whether contacts slide in the mechanisms at the ends of `admissible_interval_g`. These ends are "
-        "then upper bounds (dilatant friction), and an admissible state does not exclude sliding "
-        "without dilatancy"
+        "whether contacts slide in the mechanisms at the ends of `admissible_interval_g`. These ends are then upper bounds (dilatant "
+        "friction), and an admissible state does not exclude sliding without dilatancy"
     )
     ties: list[TieForce] = maybe("forces of ties, chains and hoops in the most central state")
     duality_gap: float = fact("greatest difference between the bounds of the thrusts, divided by the weight")
@@ -237,10 +216,10 @@ class SolidThrust(KindResults):
             return judge("The most central equilibrium state was not found.", None, None)
         if self.geometric_safety_factor is None:
             return judge(
-                (f"At {self.gamma_g:g} g, the resultants of an equilibrium state pass within 1 % of the middles of all contacts."), 0.0, 1.0
+                f"At {self.gamma_g:g} g, the resultants of an equilibrium state pass within 1 % of the middles of all contacts.", 0.0, 1.0
             )
         return judge(
-            (f"At {self.gamma_g:g} g, an equilibrium state stays within the middle {100.0 * part:.3g} % of the contacts."), part, 1.0
+            f"At {self.gamma_g:g} g, an equilibrium state stays within the middle {100.0 * part:.3g} % of the contacts.", part, 1.0
         )
 
 

@@ -27,16 +27,14 @@ class Annual(KindResults):
         "mean annual rate of collapse", "1/year", source="Cornell and Krawinkler 2000, PEER Center News 3(2)"
     )
     annual_collapse_rate_interval: list[float | None] = maybe(
-        ("confidence interval of the annual collapse rate, due to the uncertainty of the fitted fragility curve"), "1/year"
+        "confidence interval of the annual collapse rate, due to the uncertainty of the fitted fragility curve", "1/year"
     )
     annual_collapse_rate_left_out: float = maybe(
         "part of the collapse rate that intensities beyond the ends of the hazard curve may add", "1/year"
     )
     collapse_return_period_years: float | None = maybe("its inverse", "year")
     years: float = maybe("number of years to which `collapse_probability_in_years` refers", "year")
-    collapse_probability_in_years: float = maybe(
-        "probability of collapse within this number of years, if earthquakes are independent events"
-    )
+    collapse_probability_in_years: float = maybe("probability of collapse within `years`, if earthquakes are independent events")
     collapse_probability_in_years_interval: list[float | None] = maybe("its interval")
     decisive_intensity: float = maybe("intensity at which the contribution to the collapse rate is greatest, in `intensity_unit`")
     acceptable_annual_rate: float | None = maybe("rate that the deck accepts", "1/year")
@@ -106,7 +104,7 @@ class Ensemble(Annual):
     motions: int = fact("number of motions")
     conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all runs")
     handed_over: int = maybe(
-        ("number of runs that were continued with rigid contacts, because joints slide or hinges form outside the rocking mechanism"),
+        "number of runs that were continued with rigid contacts, because joints slide or hinges form outside the rocking mechanism",
         source="Moreau 1988",
     )
     collapse_probability_by_rule: dict[str, float] = maybe(
@@ -137,7 +135,7 @@ class Ensemble(Annual):
     dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
     rotation_limits: list[RotationLimit] = maybe("curves of rotations beyond limits")
     measures: list[MeasureDispersion] = maybe(
-        ("for a cloud analysis: intensity measures, ranked by how well they separate collapse from survival; the best comes first"),
+        "for a cloud analysis: intensity measures, ranked by how well they separate collapse from survival; the best comes first",
         source="Luco and Cornell 2007",
     )
 
@@ -177,7 +175,7 @@ class OverLevels(Annual):
     motions: int = fact("number of motions")
     conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all runs")
     handed_over: int = maybe(
-        ("number of runs that were continued with rigid contacts, because joints slide or hinges form outside the rocking mechanism"),
+        "number of runs that were continued with rigid contacts, because joints slide or hinges form outside the rocking mechanism",
         source="Moreau 1988",
     )
     sliding_share: list[float | None] = fact("share of the motions in which blocks slide, at each level of intensity")
@@ -206,7 +204,7 @@ class OverLevels(Annual):
         "median of the peak rotation divided by the critical rotation, at each level; a motion that causes collapse counts as 1"
     )
     peak_rotation_ratio_16: list[float | None] = fact(
-        ("16th percentile of the peak rotation divided by the critical rotation, at each level; null if this percentile is collapse"),
+        "16th percentile of the peak rotation divided by the critical rotation, at each level; null if this percentile is collapse",
         source="Vamvatsikos and Cornell 2002",
     )
     peak_rotation_ratio_50: list[float | None] = fact(
@@ -222,7 +220,7 @@ class OverLevels(Annual):
     critical_rotation_rad: float = fact("critical rotation, beyond which gravity causes collapse", "rad")
     initial_rotation_ratio: float = fact("rotation at the start, divided by the critical rotation")
     median: float | None = maybe(
-        ("median of the lognormal curve of the probability that a motion of a given level causes collapse, in `intensity_unit`"),
+        "median of the lognormal curve of the probability that a motion of a given level causes collapse, in `intensity_unit`",
         source="Baker 2015",
     )
     dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
@@ -231,10 +229,10 @@ class OverLevels(Annual):
     goodness_p_value: float | None = maybe(
         "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
     )
-    median_interval: list[float | None] = maybe("bootstrap confidence interval of this median; each motion is drawn with all its levels")
+    median_interval: list[float | None] = maybe("bootstrap confidence interval of `median`; each motion is drawn with all its levels")
     dispersion_interval: list[float | None] = maybe("bootstrap interval of that dispersion")
     first_collapse_median: float | None = maybe(
-        ("median of the lognormal curve of the lowest intensity at which a motion causes collapse, in `intensity_unit`"),
+        "median of the lognormal curve of the lowest intensity at which a motion causes collapse, in `intensity_unit`",
         source="interval-censored likelihood: Burridge 1981",
     )
     first_collapse_dispersion: float | None = maybe(
@@ -257,7 +255,7 @@ class OverLevels(Annual):
         "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
     )
     overturning_given_uplift_median: float | None = maybe(
-        ("median of the lognormal curve of the probability of collapse if rocking starts, in `intensity_unit`"), source="Baker 2015"
+        "median of the lognormal curve of the probability of collapse if rocking starts, in `intensity_unit`", source="Baker 2015"
     )
     overturning_given_uplift_dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
     overturning_given_uplift_deviance: float | None = maybe("deviance of that curve")
@@ -289,10 +287,8 @@ class OverLevels(Annual):
         if self.median is None:
             share = [p for p in self.collapse_probability if p is not None]
             return judge(
-                (
-                    f"At the highest level of {self.intensity}, {100.0 * share[-1]:.3g} % of the motions cause collapse. "
-                    "No fragility curve could be fitted."
-                ),
+                f"At the highest level of {self.intensity}, {100.0 * share[-1]:.3g} % of the motions cause collapse. "
+                "No fragility curve could be fitted.",
                 None,
                 None,
                 self.intensity_unit,
@@ -333,7 +329,7 @@ class OverDurations(KindResults):
     median_pga_g: list[float | None] = fact("median peak acceleration of the motions, at each duration", "g")
     conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all runs")
     handed_over: int = maybe(
-        ("number of runs that were continued with rigid contacts, because joints slide or hinges form outside the rocking mechanism"),
+        "number of runs that were continued with rigid contacts, because joints slide or hinges form outside the rocking mechanism",
         source="Moreau 1988",
     )
 
@@ -375,23 +371,21 @@ class Resonance(KindResults):
         "acceleration, at which the block collapses within this number"
     )
     least_cap_g: float | None = maybe(
-        ("for a block: lowest limit of the acceleration at which the rotation grows; null if the two toes differ"), "g"
+        "for a block: lowest limit of the acceleration at which the rotation grows; null if the two toes differ", "g"
     )
     least_cap_ratio: float | None = maybe(
         "lowest limit of the acceleration at which the rotation grows, divided by the uplift acceleration"
     )
     least_cap_ratios: list[list[float]] = maybe(
-        (
-            "lowest limits of the acceleration at which the rotation grows, divided by the uplift "
-            "acceleration. Rows: aspect ratios B/H; columns: initial rotations"
-        ),
+        "lowest limits of the acceleration at which the rotation grows, divided by the uplift "
+        "acceleration. Rows: aspect ratios B/H; columns: initial rotations",
         source="thesis Fig. 6-3",
     )
     aspects: list[float] = maybe("their B/H", source="thesis Fig. 6-3")
     initial_ratios: list[float] = maybe("rotations at the start, divided by the critical rotation", source="thesis Fig. 6-3")
     impulse_amplitude_g: float = maybe("for a block: amplitude of the single impulses", "g", source="thesis Fig. 6-4")
     share_of_starts_that_add: dict[str, float] = maybe(
-        ("share of the initial states in which an impulse adds energy, for each ratio of impulse period to natural period"),
+        "share of the initial states in which an impulse adds energy, for each ratio of impulse period to natural period",
         source="thesis Fig. 6-4",
     )
 
@@ -465,10 +459,8 @@ class HarmonicMap(KindResults):
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all cells of the map")
     handed_over: int = maybe(
-        (
-            "number of cells of the map that were continued with rigid contacts, because joints slide or "
-            "hinges form outside the rocking mechanism"
-        ),
+        "number of cells of the map that were continued with rigid contacts, because joints slide or "
+        "hinges form outside the rocking mechanism",
         source="Moreau 1988",
     )
 

@@ -52,7 +52,7 @@ class Intervention(ResultModel):
     start_m: list[float] = maybe("first end of a tie: [x, y], in space [x, y, z]; for a hoop, a point at the height of the hoop", "m")
     via_m: list[list[float]] = maybe("points through which a chain runs", "m")
     stiffness_N_m: float = maybe(
-        ("axial stiffness EA/L of the tie in the runs, from the deck; default: that of a steel bar with the least section"), "N/m"
+        "axial stiffness EA/L of the tie in the runs, from the deck; default: that of a steel bar with the least section", "N/m"
     )
     end_m: list[float] = maybe("second end of the tie; not given for a hoop", "m")
     unit: str = fact("unit of the sizes")
@@ -98,10 +98,10 @@ class FragilityPair(ResultModel):
     levels: list[float] = fact("factors on the motions")
     motions: int = fact("number of motions")
     before: list[float | None] = fact("share of the motions that cause collapse of the existing building")
-    before_low: list[float] = fact("lower end of the 95 % confidence interval (Wilson score) of this share", source="Wilson 1927")
+    before_low: list[float] = fact("lower end of the 95 % confidence interval (Wilson score) of `before`", source="Wilson 1927")
     before_high: list[float] = fact("upper end", source="Wilson 1927")
     after: list[float | None] = fact("share of the motions that cause collapse of the strengthened building")
-    after_low: list[float] = fact("lower end of the 95 % confidence interval (Wilson score) of this share", source="Wilson 1927")
+    after_low: list[float] = fact("lower end of the 95 % confidence interval (Wilson score) of `after`", source="Wilson 1927")
     after_high: list[float] = fact("upper end", source="Wilson 1927")
 
 

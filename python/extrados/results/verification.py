@@ -44,10 +44,8 @@ class DisplacementCheck(ResultModel):
     capacity_pga_g: float | None = fact("capacity: peak ground acceleration a_g S times the factor; capacity / demand is alpha_PGA", "g")
     return_period_years: float | None = fact("return period of the seismic action; null if not known", "year")
     capacity_return_period_years: float | None = fact(
-        (
-            "return period of the action that the building can carry, interpolated between the limit states "
-            "of [code]; null outside their range"
-        ),
+        "return period of the action that the building can carry, interpolated between the limit states "
+        "of [code]; null outside their range",
         "year",
     )
     verdict: Literal["holds", "fails", ""] = fact("verdict of the check; empty without a demand or a capacity")
@@ -74,7 +72,7 @@ class Verification(ResultModel):
     curves: list[IdealisedCurve] = fact("each curve as an oscillator")
     checks: list[DisplacementCheck] = fact("checks of each capacity curve at each limit state")
     zeta_E: float | None = fact(
-        ("zeta_E of NTC at SLV: least factor on the seismic action for which the check is satisfied; null without a demand"),
+        "zeta_E of NTC at SLV: least factor on the seismic action for which the check is satisfied; null without a demand",
         source="NTC 2018 8.3",
     )
     nbs_percent: float | None = maybe("NZSEE: %NBS, the least factor", "%")

@@ -73,10 +73,8 @@ class Code(Table):
     """The code of the report: one jurisdiction, whose rules alone decide. Without this table the rules of NTC 2018 are applied."""
 
     jurisdiction: Jurisdiction = key(
-        about=(
-            "code of the checks: NTC (Italy), EN1998 (Eurocode 8), ASCE41 (United States), NZSEE (New "
-            "Zealand), or none (no code: formulas of mechanics and research only)"
-        )
+        about="code of the checks: NTC (Italy), EN1998 (Eurocode 8), ASCE41 (United States), NZSEE (New "
+        "Zealand), or none (no code: formulas of mechanics and research only)"
     )
     edition: str | None = key(None, "edition of the code: NTC 2018, EN1998 2004, ASCE41 2013, NZSEE 2017")
     nominal_life: Years = key(50.0, "nominal life V_N of the building in years (NTC)", source="NTC 2018, 2.4.1")

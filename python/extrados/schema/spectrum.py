@@ -48,11 +48,8 @@ class TargetSpectrum(CodeSpectrum):
 
     conditional_period: Time | None = key(
         None,
-        (
-            "conditional mean spectrum: period at which `conditional_sa` is given. The table of the spectrum "
-            "then has the columns period_s,sa_g,sigma_ln: medians and standard deviations of the logarithm, "
-            "from a ground-motion model"
-        ),
+        "conditional mean spectrum: period at which `conditional_sa` is given. The table of the spectrum then has the columns "
+        "period_s,sa_g,sigma_ln: medians and standard deviations of the logarithm, from a ground-motion model",
         ge=0.01,
         le=10,
         source="Baker 2011; Baker and Jayaram 2008",
@@ -64,5 +61,5 @@ class TargetSpectrum(CodeSpectrum):
         if (self.conditional_period is None) != (self.conditional_sa is None):
             raise ValueError("conditional_period and conditional_sa go together")
         if self.conditional_period is not None and self.code != "table":
-            raise ValueError('conditional_period requires code = "table" with the column sigma_ln')
+            raise ValueError('`conditional_period` requires code = "table" with the column sigma_ln')
         return self

@@ -84,7 +84,7 @@ class Motion(Table):
 
     kind: str
     floor: FloorBelow | None = key(
-        None, ("floor of a building on which the structure stands; each analysis then applies the motion of this floor")
+        None, "floor of a building on which the structure stands; each analysis then applies the motion of this floor"
     )
 
 

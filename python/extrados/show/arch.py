@@ -151,7 +151,8 @@ def _draw_contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ],
         )
         style.legend_above(energy)
-        slip.plot(time, 1e3 * np.abs(run.array(name, "contacts_slip")).max(axis=1), color=style.HINGE, linewidth=0.9)
+        most = np.abs(np.nan_to_num(run.array(name, "contacts_slip"))).max(axis=1)
+        slip.plot(time, 1e3 * most, color=style.HINGE, linewidth=0.9)
         slip.set_ylabel("greatest slip\n[mm]")
         slip.set_xlabel("time [s]")
         for ax in axes:
@@ -163,9 +164,8 @@ def _draw_contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     return (
         saved,
         (
-            "Histories: ground motion, rotations, energies, greatest slip of a joint. Dotted: start of the "
-            f"calculation with rigid contacts at {over.time_s:.3f} s. Dashed: acceleration at which rocking "
-            "starts."
+            "Histories: ground motion, rotations, energies, greatest slip of a joint. Dotted: start of the calculation with rigid "
+            f"contacts at {over.time_s:.3f} s. Dashed: acceleration at which rocking starts."
         ),
     )
 

@@ -74,9 +74,8 @@ def _margins(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-margins")
     return saved, (
-        "Critical scale factor of the hazard by each strategy. Left of the dashed line (factor 1), the "
-        "hazard itself causes collapse. Bar: the factor is between its ends. Arrow: the factor is "
-        "beyond this point; its value was not searched."
+        "Critical scale factor of the hazard by each strategy. Left of the dashed line (factor 1), the hazard itself causes collapse. "
+        "Bar: the factor is between its ends. Arrow: the factor is beyond this point; its value was not searched."
     )
 
 

@@ -77,9 +77,8 @@ def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str,
         else:
             style.legend_below(fig, plain)
         caption = (
-            "Left: lowest amplitude that causes collapse of each structure (dotted: start of rocking). "
-            "Right: the same curves, with durations divided by the natural time and amplitudes by the "
-            "uplift acceleration."
+            "Left: lowest amplitude that causes collapse of each structure (dotted: start of rocking). Right: the same curves, with "
+            "durations divided by the natural time and amplitudes by the uplift acceleration."
         )
         if len(places):
             named = ", ".join(f"{k + 1} {i.name}" for k, i in enumerate(r.impulses))

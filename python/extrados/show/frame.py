@@ -68,9 +68,8 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
         (
             saved,
             (
-                f"Capacity curves of {len(r.runs)} pushovers. Thin lines: with accidental eccentricity. Dots: "
-                "ultimate displacement (base shear decreased by 20 %, or all piers of a wall in one storey at "
-                "their drift limits)."
+                f"Capacity curves of {len(r.runs)} pushovers. Thin lines: with accidental eccentricity. Dots: ultimate displacement "
+                "(base shear decreased by 20 %, or all piers of a wall in one storey at their drift limits)."
             ),
         )
     )

@@ -255,7 +255,7 @@ def _next_step(run: Stored, lead: dict[str, Any], words: Language) -> str:
             return f"Resolve the first violated assumption: {v['violated'][0]}"
         if isinstance(r, Assess) and r.not_done:
             return words(
-                ("A step has no verdict: {step}. Run again with a larger `budget`, or with a later end of the run."), step=r.not_done[0]
+                "A step has no verdict: {step}. Run again with a larger `budget`, or with a later end of the run.", step=r.not_done[0]
             )
         return words(
             "Compare the reasons below. Then refine the data that decide the difference: measured friction, thickness and restraints first."
@@ -263,7 +263,7 @@ def _next_step(run: Stored, lead: dict[str, Any], words: Language) -> str:
     if outcome == "stands":
         if factor is not None and factor < THIN:
             return words(
-                ("The safety factor of {factor} is close to 1. Check its sensitivity to thickness, friction and strength."),
+                "The safety factor of {factor} is close to 1. Check its sensitivity to thickness, friction and strength.",
                 factor=words.number(factor),
             )
         return words(
@@ -299,7 +299,7 @@ def _strengthening(run: Stored, lead: dict[str, Any], words: Language) -> str:
         )
     told = "; ".join(f"{one.name}, {size_told(one)}" for one in met)
     text = words(
-        ("Strengthening for the peak acceleration of the hazard, applied as a constant horizontal acceleration: {interventions}."),
+        "Strengthening for the peak acceleration of the hazard, applied as a constant horizontal acceleration: {interventions}.",
         interventions=told,
     )
     least = r.advice.by_rocking

@@ -93,9 +93,8 @@ def _stage_curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.set_ylabel("base shear [kN]" if push else "force on the moving ground [kN]")
             ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "Stages in order; each starts with the damage of the stages before. Lateral loads: base shear "
-            "over control displacement. Settlement: force along the movement, summed over the moving "
-            "supports."
+            "Stages in order; each starts with the damage of the stages before. Lateral loads: base shear over control displacement. "
+            "Settlement: force along the movement, summed over the moving supports."
         )
 
 
@@ -204,10 +203,9 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         right.set_ylabel("base shear over weight")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "Capacity curves: every state (thin), the envelope and its bilinear idealisation of equal area. "
-            "Dots: states found by equilibrium iterations. Dotted line: Coulomb limit of the level that "
-            "slides first, which the curve does not include. Blue-grey: variants of the assumptions. Grey: "
-            "other analyses of the run."
+            "Capacity curves: every state (thin), the envelope and its bilinear idealisation of equal area. Dots: states found by "
+            "equilibrium iterations. Dotted line: Coulomb limit of the level that slides first, which the curve does not include. "
+            "Blue-grey: variants of the assumptions. Grey: other analyses of the run."
         )
 
 
@@ -353,9 +351,8 @@ def _from_above(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str,
             title=f"cracks, up to {1e3 * most:.3g} mm wide",
         )
         return style.save(fig, folder, f"{name}{_suffix(prefix)}-plan"), (
-            "Cracks seen from above, at the greatest load and at the end. At each point the widest crack "
-            "through the thickness is drawn. Red: widest at the extrados. Blue: widest at the intrados. The "
-            "line width is proportional to the crack width."
+            "Cracks seen from above, at the greatest load and at the end. At each point the widest crack through the thickness is "
+            "drawn. Red: widest at the extrados. Blue: widest at the intrados. The line width is proportional to the crack width."
         )
 
 
@@ -386,9 +383,8 @@ def _space(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]
             ax.set_title(_state_word(run, name, prefix, k))
         fig.colorbar(drawn, ax=list(panels), label="crack width [mm]", shrink=0.7)
         return style.save(fig, folder, f"{name}{_suffix(prefix)}-space"), (
-            f"The building at the greatest base shear and at the end, with displacements magnified {factor:g} "
-            "times. The widest crack of each element is drawn. The fields are in the VTU files, for "
-            "ParaView."
+            f"The building at the greatest base shear and at the end, with displacements magnified {factor:g} times. The widest crack "
+            "of each element is drawn. The fields are in the VTU files, for ParaView."
         )
 
 

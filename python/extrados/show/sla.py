@@ -97,9 +97,8 @@ def _all_stages(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.legend(title="stage")
         title = style.save(fig, folder, f"{name}-stages")
     return title, (
-        "Load over displacement in all stages: every event in equilibrium (thin), and envelopes. A dot "
-        "marks the start of a stage. Stages with the same line of action share a panel, with the sign "
-        "of the first of them."
+        "Load over displacement in all stages: every event in equilibrium (thin), and envelopes. A dot marks the start of a stage. "
+        "Stages with the same line of action share a panel, with the sign of the first of them."
     )
 
 
@@ -164,9 +163,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_ylabel("load [kN]")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "Load over displacement: every state (thin; dots: by equilibrium iterations), the envelope and "
-            "its bilinear idealisation. Grey, if present: steps of an incremental solution of the same "
-            f"deck.{_dropped(r)}"
+            "Load over displacement: every state (thin; dots: by equilibrium iterations), the envelope and its bilinear idealisation. "
+            f"Grey, if present: steps of an incremental solution of the same deck.{_dropped(r)}"
         )
 
 
@@ -497,7 +495,6 @@ def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         style.legend_below(fig, ax)
         title = style.save(fig, folder, f"{name}-energy")
     return title, (
-        "Energies: the work of the loads is stored, dissipated, or lost when the structure changes from "
-        f"one state to another. The error of the energy balance is {run.results_of(name, Sla).energy_residual_ratio:.1e} "
-        "of the work."
+        "Energies: the work of the loads is stored, dissipated, or lost when the structure changes from one state to another. The error "
+        f"of the energy balance is {run.results_of(name, Sla).energy_residual_ratio:.1e} of the work."
     )

@@ -117,9 +117,8 @@ def _draw_forces(run: Stored, name: str, folder: Path, r: SolidTilt, stones: sce
         ax.set_title(f"Forces between the stones at {r.collapse_acceleration_g:.4f} g; the greatest is {size.max() / 1e3:.3g} kN")
         saved = style.save(fig, folder, f"{name}-forces")
     return saved, (
-        "Forces between the stones, and on the ground, at collapse. Each arrow starts at the centre of "
-        f"compression of its contact; its length is proportional to the force. The greatest force is {size.max() / 1000.0:.3g} "
-        "kN."
+        "Forces between the stones, and on the ground, at collapse. Each arrow starts at the centre of compression of its contact; its "
+        f"length is proportional to the force. The greatest force is {size.max() / 1000.0:.3g} kN."
     )
 
 

@@ -303,9 +303,8 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_ylabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
         style.legend_below(fig, ax)
         return style.save(fig, folder, f"{name}-incremental"), (
-            f"Incremental curves of {min(len(ratio), HAIRS)} motions, with the percentiles of all {r.motions} "
-            f"motions. {r.resurrections} motions overturn the structure at one level but not at a higher "
-            "level."
+            f"Incremental curves of {min(len(ratio), HAIRS)} motions, with the percentiles of all {r.motions} motions. "
+            f"{r.resurrections} motions overturn the structure at one level but not at a higher level."
         )
 
 

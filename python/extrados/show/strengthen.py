@@ -77,9 +77,8 @@ def _mechanisms(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[st
             ax.set_ylim(every[:, 1].min() - room, every[:, 1].max() + room)
         saved = style.save(fig, folder, f"{name}-mechanisms")
     return saved, (
-        "Governing collapse mechanisms, magnified: the existing building, and the building with each "
-        "intervention. Each has the size that meets the target (if no size meets it, the greatest size "
-        "considered)."
+        "Governing collapse mechanisms, magnified: the existing building, and the building with each intervention. Each has the size "
+        "that meets the target (if no size meets it, the greatest size considered)."
     )
 
 
@@ -110,9 +109,8 @@ def _mechanisms_in_space(run: Stored, r: Strengthen, name: str, folder: Path) ->
                 ax.add_collection(LineCollection(lines, colors=section.TIE, linewidths=1.6, zorder=3))
         saved = style.save(fig, folder, f"{name}-mechanisms")
     return saved, (
-        "Governing collapse mechanisms, magnified: the existing building, and the building with each "
-        "intervention of the size that meets the target. Colours: speed of the blocks (red: fastest). "
-        "Lines: hoops, chains and ties."
+        "Governing collapse mechanisms, magnified: the existing building, and the building with each intervention of the size that "
+        "meets the target. Colours: speed of the blocks (red: fastest). Lines: hoops, chains and ties."
     )
 
 

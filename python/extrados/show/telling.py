@@ -334,7 +334,7 @@ def _counts(p: dict[str, Any], used: set[str]) -> bool:
 
 def _without_keys(text: str, keys: set[str]) -> str:
     """A sentence with the keys of the deck in words: "contact tolerance" for contact_tolerance."""
-    return re.sub(r"[a-z]+(?:_[a-z]+)+", lambda found: found[0].replace("_", " ") if found[0] in keys else found[0], text)
+    return re.sub(r"`?([a-z]+(?:_[a-z]+)+)`?", lambda found: found[1].replace("_", " ") if found[1] in keys else found[0], text)
 
 
 def _defaults(deck: dict[str, Any], words: Language) -> list[Block]:

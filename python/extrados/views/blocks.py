@@ -82,11 +82,8 @@ class Masonry(Description):
             more = sorted(self.materials[name].model_fields_set - {"density"})
             if more:
                 raise BadGeometry(
-                    (
-                        f"[materials.{name}] gives blocks a different {more[0]}. Discrete and finite elements use one "
-                        "elastic material for all blocks, that of [material]: remove this value, or give the stiffness "
-                        "of the joints"
-                    ),
+                    f"[materials.{name}] gives blocks a different {more[0]}. Discrete and finite elements use one elastic material for "
+                    "all blocks, that of [material]: remove this value, or give the stiffness of the joints",
                     ("materials", name, more[0]),
                 )
 
@@ -103,10 +100,8 @@ class Masonry(Description):
         stones = self.blocks() if assembly is None else assembly
         if not (stones.mass > 0.0).all():
             raise NoView(
-                (
-                    f"block '{stones.block_names[int(stones.mass.argmin())]}' has no weight, but the analysis "
-                    "requires one: give a density above zero"
-                ),
+                f"block '{stones.block_names[int(stones.mass.argmin())]}' has no weight, but the analysis "
+                "requires one: give a density above zero",
                 ("material", "density"),
             )
 

@@ -80,10 +80,9 @@ def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None
         for one in contributions
     )
     method = (
-        "The ratio of calculated to measured capacity is assumed lognormal. Its bias and scatter come "
-        "from the tests of the verification book; the number of tests gives the confidence interval. "
-        "The weight of a strategy is its share of all tests. The overall interval encloses the "
-        f"intervals of all strategies. {each}.{left}"
+        "The ratio of calculated to measured capacity is assumed lognormal. Its bias and scatter come from the tests of the "
+        "verification book; the number of tests gives the confidence interval. The weight of a strategy is its share of all tests. The "
+        f"overall interval encloses the intervals of all strategies. {each}.{left}"
     )
     return CollapseProbability(
         probability=p, low=low, high=high, contributions=contributions, without=without, statement=said, method=method, **dynamic

@@ -150,10 +150,9 @@ def torn_off(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "torn-off",
         mine,
-        f"The codes consider each wall separately from the transverse walls: wall {wall.wall} overturns out of its plane "
-        f"about the foot of storey {wall.storey} at alpha_0 = {wall.multiplier:.3g}. By the {facts.rows[weakest].label}, "
-        f"corners and floors hold the walls together. The whole building then carries {carried[weakest]:.3g} g, if the "
-        "walls are bonded and anchored.",
+        f"The codes consider each wall separately from the transverse walls: wall {wall.wall} overturns out of its plane about the foot "
+        f"of storey {wall.storey} at alpha_0 = {wall.multiplier:.3g}. By the {facts.rows[weakest].label}, corners and floors hold the "
+        f"walls together. The whole building then carries {carried[weakest]:.3g} g, if the walls are bonded and anchored.",
         multiplier=wall.multiplier,
         whole_g=carried[weakest],
     )
@@ -172,10 +171,8 @@ def weaker_direction(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "weaker-direction",
         mine,
-        (
-            f"The cross-sectional area of the walls is {area[weak]:.3g} m^2 along the {weak.removeprefix('push-')} "
-            f"axis, and {area[strong]:.3g} m^2 along the {strong.removeprefix('push-')} axis."
-        ),
+        f"The cross-sectional area of the walls is {area[weak]:.3g} m^2 along the {weak.removeprefix('push-')} "
+        f"axis, and {area[strong]:.3g} m^2 along the {strong.removeprefix('push-')} axis.",
         weak_m2=area[weak],
         strong_m2=area[strong],
     )
@@ -213,12 +210,9 @@ def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "frame-and-shells",
         mine,
-        (
-            f"{' '.join(told)} In the frame, sections carry no tension, and piers slide or crack at the "
-            "strengths of codes. Its flanges act only by the vertical shear at corners. The shells have the "
-            "tensile strength of the masonry and also bend out of plane. They slide only along joints that "
-            "the deck gives."
-        ),
+        f"{' '.join(told)} In the frame, sections carry no tension, and piers slide or crack at the strengths of codes. Its flanges act "
+        "only by the vertical shear at corners. The shells have the tensile strength of the masonry and also bend out of plane. They "
+        "slide only along joints that the deck gives.",
         **numbers,
     )
 

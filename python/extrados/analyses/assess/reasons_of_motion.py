@@ -26,12 +26,9 @@ def left_out(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "left-out",
         mine,
-        (
-            f"The restraints of the mechanism are {' and '.join(sorted(every))}. The following strategies "
-            f"neglect them: {' and '.join(facts.rows[n].label for n in bare if any(n in p for p in mine))}. "
-            f"Without restraints the greatest rotation is {100 * other.peak_rotation_ratio:.3g} % of the "
-            f"critical rotation, with restraints {100 * r.peak_rotation_ratio:.3g} %."
-        ),
+        f"The restraints of the mechanism are {' and '.join(sorted(every))}. The following strategies neglect them: "
+        f"{' and '.join(facts.rows[n].label for n in bare if any(n in p for p in mine))}. Without restraints the greatest rotation is "
+        f"{100 * other.peak_rotation_ratio:.3g} % of the critical rotation, with restraints {100 * r.peak_rotation_ratio:.3g} %.",
         rotation_ratio_without=other.peak_rotation_ratio,
         rotation_ratio=r.peak_rotation_ratio,
     )
@@ -78,13 +75,10 @@ def sine_for_record(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "sine-for-record",
         mine,
-        (
-            f"The criterion replaces the motion by its strongest sine, with {abs(a.primary_impulse.amplitude_g):.3g} "
-            f"g and a period of {a.primary_impulse.period_s:.3g} s (it explains {100 * a.primary_impulse.goodness_of_fit:.0f} "
-            "% of the squared acceleration over its duration). Under this sine alone, the greatest rotation "
-            f"is {100 * sine.peak_rotation_ratio:.0f} % of the critical rotation. Under the whole motion, it is {100 * whole.peak_rotation_ratio:.0f} "
-            "%."
-        ),
+        f"The criterion replaces the motion by its strongest sine, with {abs(a.primary_impulse.amplitude_g):.3g} g and a period of "
+        f"{a.primary_impulse.period_s:.3g} s (it explains {100 * a.primary_impulse.goodness_of_fit:.0f} % of the squared acceleration "
+        f"over its duration). Under this sine alone, the greatest rotation is {100 * sine.peak_rotation_ratio:.0f} % of the critical "
+        f"rotation. Under the whole motion, it is {100 * whole.peak_rotation_ratio:.0f} %.",
         sine_amplitude_g=abs(a.primary_impulse.amplitude_g),
         sine_period_s=a.primary_impulse.period_s,
         sine_rotation_ratio=sine.peak_rotation_ratio,
@@ -137,10 +131,8 @@ def chance(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "chance",
         mine,
-        (
-            f"Under the hazard itself, {100 * row.demand:.0f} % of the sampled runs collapse ({row.parameters.split(' (coef')[0]}). "
-            "A single run of one building under one motion is one member of this sample."
-        ),
+        f"Under the hazard itself, {100 * row.demand:.0f} % of the sampled runs collapse ({row.parameters.split(' (coef')[0]}). "
+        "A single run of one building under one motion is one member of this sample.",
         share=row.demand,
     )
 
@@ -183,9 +175,8 @@ def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
         "sliding",
         mine,
         f"{text}, which a rocking mechanism excludes. Without sliding the discrete elements "
-        f"{'collapse' if other.outcome == 'collapse' else 'stand'}, with a displacement of "
-        f"{other.peak_displacement_m:.3g} m. With sliding "
-        f"{'they collapse' if dem.outcome == 'collapse' else f'the displacement is {dem.peak_displacement_m:.3g} m'}.",
+        f"{'collapse' if other.outcome == 'collapse' else 'stand'}, with a displacement of {other.peak_displacement_m:.3g} m. With "
+        f"sliding {'they collapse' if dem.outcome == 'collapse' else f'the displacement is {dem.peak_displacement_m:.3g} m'}.",
         **numbers,
     )
 
@@ -207,11 +198,9 @@ def hinges_elsewhere(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "hinges-elsewhere",
         mine,
-        (
-            f"During {100 * share:.0f} % of the rocking time, the thrust line of the assumed mechanism passes "
-            f"outside the blocks, by up to {100 * float(out.max()):.0f} % of their thickness. Hinges then form "
-            "at other joints too, which only discrete elements represent."
-        ),
+        f"During {100 * share:.0f} % of the rocking time, the thrust line of the assumed mechanism passes "
+        f"outside the blocks, by up to {100 * float(out.max()):.0f} % of their thickness. Hinges then form "
+        "at other joints too, which only discrete elements represent.",
         share_of_time=share,
         farthest_ratio=float(out.max()),
     )

@@ -47,9 +47,8 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
     needed = facts.needed_s(amplitude)
     told = f"{amplitude:.3g} g" if factor == 1.0 else f"{amplitude:.3g} g (the motion times {factor:.3g})"
     text = (
-        f"Static analysis applies the peak of {told} as a constant horizontal acceleration; the motion exceeds the "
-        f"{capacity:.3g} g of {facts.rows[weakest].label} {count} time{'s' if count != 1 else ''}, each time for "
-        f"{longest:.3g} s at most"
+        f"Static analysis applies the peak of {told} as a constant horizontal acceleration; the motion exceeds the {capacity:.3g} g of "
+        f"{facts.rows[weakest].label} {count} time{'s' if count != 1 else ''}, each time for {longest:.3g} s at most"
     )
     numbers = {"static_capacity": capacity, "peak": amplitude, "excursions": float(count), "longest_s": longest, "needed_s": needed}
     if needed is not None and longest < needed:
@@ -70,7 +69,7 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
     return reason(
         "static-peak",
         [p for p in mine if "dem" in p],
-        (f"{text}. During that time the blocks move by only {100 * moved:.2g} % of the displacement that counts as collapse."),
+        f"{text}. During that time the blocks move by only {100 * moved:.2g} % of the displacement that counts as collapse.",
         displacement_ratio=moved,
         **numbers,
     )
@@ -158,10 +157,8 @@ def sliding_as_collapse(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "sliding",
         mine,
-        (
-            f"Limit analysis counts sliding as collapse, which begins at {least:.3g} g. Under the motion the "
-            f"blocks slide by {1000.0 * dem.peak_slip_m:.3g} mm and do not collapse."
-        ),
+        f"Limit analysis counts sliding as collapse, which begins at {least:.3g} g. Under the motion the "
+        f"blocks slide by {1000.0 * dem.peak_slip_m:.3g} mm and do not collapse.",
         static_capacity=least,
         slip_m=dem.peak_slip_m,
     )
@@ -193,10 +190,8 @@ def membrane(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return reason(
             "tension",
             mine,
-            (
-                f"The finite elements have a tensile strength of {strength / 1000000.0:.3g} MPa; the dry joints of "
-                f"limit analysis have none. The capacities are {sla.capacity:.3g} g and {least:.3g} g."
-            ),
+            f"The finite elements have a tensile strength of {strength / 1000000.0:.3g} MPa; the dry joints of "
+            f"limit analysis have none. The capacities are {sla.capacity:.3g} g and {least:.3g} g.",
             tensile_strength=strength,
             elements=sla.capacity,
             stones=least,
@@ -214,10 +209,8 @@ def mortar(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "mortar",
         mine,
-        (
-            f"Until it breaks, the mortar has a tensile strength of {joints.tension / 1000000.0:.3g} MPa and a "
-            f"cohesion of {joints.cohesion / 1000000.0:.3g} MPa. Limit analysis and rocking neglect both."
-        ),
+        f"Until it breaks, the mortar has a tensile strength of {joints.tension / 1000000.0:.3g} MPa and a "
+        f"cohesion of {joints.cohesion / 1000000.0:.3g} MPa. Limit analysis and rocking neglect both.",
         tension=joints.tension,
         cohesion=joints.cohesion,
     )

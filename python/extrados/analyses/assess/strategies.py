@@ -151,10 +151,8 @@ def _probability(asked: Asked) -> Choice:
     told = ", ".join(f"{name} {100 * v:g} %" for name, v in uncertain.items())
     return Choice(
         {"count": count, "seed": 1, "uncertain": uncertain},
-        (
-            f"{count} samples of the building with uncertain {told} (coefficients of variation); this "
-            f"strategy may use {100 * SHARES['probability']:g} % of the time budget, which limits their number"
-        ),
+        f"{count} samples of the building with uncertain {told} (coefficients of variation); this "
+        f"strategy may use {100 * SHARES['probability']:g} % of the time budget, which limits their number",
     )
 
 
@@ -179,9 +177,8 @@ def _push(asked: Asked, direction: float) -> Choice:
         **_action(asked),
     }
     words = (
-        f"forces in proportion to the masses along {'x' if direction == 0.0 else 'y'}, in both senses; elements of "
-        f"{size:g} m, {LAYERS} points through the thickness, at most {events} events, until the load has decreased to "
-        f"{FALLEN:g} of its peak"
+        f"forces in proportion to the masses along {'x' if direction == 0.0 else 'y'}, in both senses; elements of {size:g} m, {LAYERS} "
+        f"points through the thickness, at most {events} events, until the load has decreased to {FALLEN:g} of its peak"
     )
     return Choice(keys, words)
 
@@ -200,10 +197,8 @@ def _frame(asked: Asked) -> Choice:
     # walls out of their planes are a strategy of their own
     return Choice(
         {"out_of_plane": False, **_action(asked)},
-        (
-            "both directions, in both senses; forces in proportion to the masses, and to the masses times "
-            "their height; accidental eccentricity 0 and 5 %"
-        ),
+        "both directions, in both senses; forces in proportion to the masses, and to the masses times "
+        "their height; accidental eccentricity 0 and 5 %",
     )
 
 
@@ -308,11 +303,9 @@ def _dem(asked: Asked) -> Choice:
     keys["joints"] = {"normal_stiffness": stiffness}
     return Choice(
         keys,
-        (
-            f"{words}; the joints have {engineering(stiffness, 'Pa/m')}, the greatest stiffness for which the "
-            f"run fits into {100 * SHARES['dem']:g} % of the time budget (E divided by the block length gives {engineering(float(np.median(values.stiffness)), 'Pa/m')}; "
-            f"{engineering(least, 'Pa/m')} is sufficient)"
-        ),
+        f"{words}; the joints have {engineering(stiffness, 'Pa/m')}, the greatest stiffness for which the "
+        f"run fits into {100 * SHARES['dem']:g} % of the time budget (E divided by the block length gives {engineering(float(np.median(values.stiffness)), 'Pa/m')}; "
+        f"{engineering(least, 'Pa/m')} is sufficient)",
         taken,
     )
 

@@ -34,11 +34,8 @@ class Assess(Analysis):
     starter: ClassVar = {"budget": "20"}
     budget: float = key(
         60.0,
-        (
-            "time limit in s. The program chooses the sizes of the expensive strategies so that their "
-            "estimated time (one core of a computer of 2024) fits into this limit. Steps that still run "
-            "after it are stopped and reported"
-        ),
+        "time limit in s. The program chooses the sizes of the expensive strategies so that their estimated time (one core of a "
+        "computer of 2024) fits into this limit. Steps that still run after it are stopped and reported",
         ge=5,
         le=1e6,
     )
@@ -51,14 +48,14 @@ class Assess(Analysis):
     )
     thin: float = key(
         1.5,
-        ("a critical scale factor between the inverse of this value and this value counts as close to 1; additional runs then follow"),
+        "a critical scale factor between the inverse of this value and this value counts as close to 1; additional runs then follow",
         gt=1,
         le=10,
     )
     apart: float = key(1.5, "ratio of two critical scale factors from which they are reported as different, with the reasons", gt=1, le=10)
     acceptable_probability: float = key(
         0.05,
-        ('probability of collapse up to which `probability` gives the verdict "stands"; above 0.5 the verdict is "collapses"'),
+        'probability of collapse up to which `probability` gives the verdict "stands"; above 0.5 the verdict is "collapses"',
         gt=0,
         lt=0.5,
     )
@@ -74,30 +71,23 @@ class Assess(Analysis):
     )
     sensitivity: bool = key(
         False,
-        (
-            "also vary thickness, corners, friction, restitution and density one by one. Limit analysis and "
-            "rocking give the safety factor for each value, and the value at which their verdict changes. "
-            "Discrete elements vary the joint stiffness and move a support. This takes 25 % of the time "
-            "budget"
-        ),
+        "also vary thickness, corners, friction, restitution and density one by one. Limit analysis and rocking give the safety factor "
+        "for each value, and the value at which their verdict changes. Discrete elements vary the joint stiffness and move a support. "
+        "This takes 25 % of the time budget",
     )
     vary: dict[str, Annotated[float, Field(gt=0, lt=1)]] | None = key(
-        None, ('keys to vary instead of the default ones, each with its relative change: { "structure.thickness" = 0.1 }')
+        None, 'keys to vary instead of the default ones, each with its relative change: { "structure.thickness" = 0.1 }'
     )
     advise: bool = key(
         True,
-        (
-            'if at least one strategy does not give the verdict "stands": also find the least tie force and '
-            "the least thickness with which the building carries the peak acceleration of the hazard as a "
-            "sustained load"
-        ),
+        'if at least one strategy does not give the verdict "stands": also find the least tie force and '
+        "the least thickness with which the building carries the peak acceleration of the hazard as a "
+        "sustained load",
     )
     options: dict[Strategy, dict[str, Any]] = key(
         {},
-        (
-            "keys for the analysis of a strategy, such as `dem = { joints.normal_stiffness = 2e10 }`; they "
-            "replace the values that the program would choose"
-        ),
+        "keys for the analysis of a strategy, such as `dem = { joints.normal_stiffness = 2e10 }`; they "
+        "replace the values that the program would choose",
     )
 
     @property

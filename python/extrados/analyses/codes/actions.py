@@ -133,15 +133,13 @@ def refuse_mixed(context: Context, options: CodeChecks | LocalMechanism | Verifi
         if model is not None and not fits(code, model):
             assert code is not None
             raise Refused(
-                (
-                    f"the spectrum is that of {model.code}, but the checks are by {code.jurisdiction}: give the "
-                    "action in [code], or another `jurisdiction`"
-                ),
+                f"the spectrum is that of {model.code}, but the checks are by {code.jurisdiction}: give the "
+                "action in [code], or another `jurisdiction`",
                 ("analysis", name),
             )
     if getattr(options, "collapse_spectrum", None) is not None and code_of(context).jurisdiction != "NTC":
         raise Refused(
-            ("`collapse_spectrum` is the spectrum of SLC, and only NTC has this limit state: remove `collapse_spectrum`"),
+            "`collapse_spectrum` is the spectrum of SLC, and only NTC has this limit state: remove `collapse_spectrum`",
             ("analysis", "collapse_spectrum"),
         )
 

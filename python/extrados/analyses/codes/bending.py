@@ -142,10 +142,8 @@ def vertical_bending(
             if sum(setback) >= thickness:
                 if weight + load > strength * width * thickness:
                     raise CannotStand(
-                        (
-                            f"the wall crushes under its weight: the load is {(weight + load) / 1000.0:.3g} kN, but the section "
-                            f"carries at most {strength * width * thickness / 1000.0:.3g} kN"
-                        ),
+                        f"the wall crushes under its weight: the load is {(weight + load) / 1000.0:.3g} kN, but the section "
+                        f"carries at most {strength * width * thickness / 1000.0:.3g} kN",
                         neglects=(),
                     )
                 raise BadGeometry(

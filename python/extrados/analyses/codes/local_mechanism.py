@@ -199,9 +199,8 @@ def _of_walls(context: Context, judged: list[_Judged]) -> Result:
         {name: [np.nan if (v := getattr(row, name)) is None else v for row in walls] for name in out.WallMechanism.model_fields}
     )
     result.answer += (
-        f" This part is the weakest of {len(judged)} parts of {len(plan.walls)} walls. Each part is considered separately "
-        "from the transverse walls. Only rigid floors and props restrain the walls; flexible floors, joists, rods and "
-        "floors with a seat do not."
+        f" This part is the weakest of {len(judged)} parts of {len(plan.walls)} walls. Each part is considered separately from the "
+        "transverse walls. Only rigid floors and props restrain the walls; flexible floors, joists, rods and floors with a seat do not."
     )
     context.warnings += plan.floor_remarks
     if plan.rods:
@@ -211,9 +210,8 @@ def _of_walls(context: Context, judged: list[_Judged]) -> Result:
         )
     if plan.ring_beams:
         context.warnings.append(
-            "Ring beams are neglected, because the deck does not give the strength of their connection to "
-            "the walls. A wall with a ring beam has a greater multiplier. If the top of a wall is "
-            "restrained, give [[structure.props]]."
+            "Ring beams are neglected, because the deck does not give the strength of their connection to the walls. A wall with a ring "
+            "beam has a greater multiplier. If the top of a wall is restrained, give [[structure.props]]."
         )
     return result
 

@@ -59,10 +59,8 @@ def _bending(options: LocalMechanism, density: float, strength: float | None) ->
         for k, floor in enumerate(options.floors):
             if floor.height < float(options.height or 0.0) or floor.pushing or floor.thrust:
                 raise Refused(
-                    (
-                        "vertical bending includes the load of the floors on top of the wall, and these floors restrain "
-                        "the top: give `height` at the top, and `load`"
-                    ),
+                    "vertical bending includes the load of the floors on top of the wall, and these floors restrain "
+                    "the top: give `height` at the top, and `load`",
                     ("analysis", "floors", k),
                 )
         load = sum(f.load for f in options.floors)
@@ -73,11 +71,8 @@ def _bending(options: LocalMechanism, density: float, strength: float | None) ->
     if options.abutment_force is None:
         if strength is None:
             raise Refused(
-                (
-                    "horizontal bending requires `abutment_force`, the force that each side wall resists. If the "
-                    "side walls do not move, give `compressive_strength` of [material] instead, which then limits "
-                    "the thrust"
-                ),
+                "horizontal bending requires `abutment_force`, the force that each side wall resists. If the side walls do not move, "
+                "give `compressive_strength` of [material] instead, which then limits the thrust",
                 ("analysis",),
             )
         # H (t - a) with H = f h a is greatest at a = t/2
@@ -88,10 +83,8 @@ def _bending(options: LocalMechanism, density: float, strength: float | None) ->
     depth = 0.0 if strength is None else force / (strength * height)
     if depth >= 0.5 * thickness:
         raise Refused(
-            (
-                f"the strip cannot carry this thrust: it requires a compressed depth of {depth:.3g} m, but at most "
-                f"half of the thickness of {thickness:g} m can be compressed"
-            ),
+            f"the strip cannot carry this thrust: it requires a compressed depth of {depth:.3g} m, but at most "
+            f"half of the thickness of {thickness:g} m can be compressed",
             ("analysis", "abutment_force"),
         )
     return HorizontalBending(width, thickness, weight + sway, force, thrust, depth)
@@ -127,15 +120,13 @@ def _refuse_sizes(options: LocalMechanism) -> None:
     for name, users in ONLY.items():
         if name in options.model_fields_set and getattr(options, name) and options.mechanism not in users:
             raise Refused(
-                (f"mechanism '{options.mechanism}' does not use `{name}`: remove this key, which is used only with {', '.join(users)}"),
+                f"mechanism '{options.mechanism}' does not use `{name}`: remove this key, which is used only with {', '.join(users)}",
                 ("analysis", name),
             )
     if options.interlocking is not None and options.side_walls is not None:
         raise Refused(
-            (
-                "`interlocking` is for a facade that separates from its side walls, and `side_walls` for a "
-                "facade that moves with parts of them: remove one of the two keys"
-            ),
+            "`interlocking` is for a facade that separates from its side walls, and `side_walls` for a "
+            "facade that moves with parts of them: remove one of the two keys",
             ("analysis", "interlocking"),
         )
     if options.interlocking is not None and options.interlocking.unit_height > top - options.hinge_height:
@@ -194,19 +185,15 @@ def set_back(weights: list[Weight], strength: float, width: float, thickness: fl
     weight, most = sum(w.weight for w in weights if w.rests), strength * width * thickness
     if weight > most:
         raise CannotStand(
-            (
-                f"the wall crushes at the hinge under its weight: the load is {weight / 1000.0:.3g} kN, but the "
-                f"section carries at most {most / 1000.0:.3g} kN"
-            ),
+            f"the wall crushes at the hinge under its weight: the load is {weight / 1000.0:.3g} kN, but the "
+            f"section carries at most {most / 1000.0:.3g} kN",
             neglects=(),
         )
     setback = 0.5 * weight / (BLOCK * strength * width)
     if setback >= thickness / 2.0:
         raise Refused(
-            (
-                "under the weight, the triangle of compressive stress at the hinge is wider than the wall: the "
-                f"stress exceeds {BLOCK:g} of the compressive strength"
-            ),
+            "under the weight, the triangle of compressive stress at the hinge is wider than the wall: the "
+            f"stress exceeds {BLOCK:g} of the compressive strength",
             ("material", "compressive_strength"),
         )
     return [replace(w, arm=w.arm - setback) for w in weights]

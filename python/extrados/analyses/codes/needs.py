@@ -75,10 +75,8 @@ def _read_walls(building: Building) -> None:
 
 def _refuse_unheld(what: str, key: Key) -> None:
     raise Refused(
-        (
-            f'local-mechanism can include {what} only for blocks with mechanism = "building". Remove it, or '
-            "give the restraint of a wall as `ties` of the analysis"
-        ),
+        f'local-mechanism can include {what} only for blocks with mechanism = "building". Remove it, or '
+        "give the restraint of a wall as `ties` of the analysis",
         key,
     )
 

@@ -261,9 +261,8 @@ def _nonlinear(found: Capacities, state: str, spectrum: Spectrum | None, place: 
         share * found.d0,
         demand,
         "m",
-        f"NTC 2018, Circ. 7/2019 C8.7.1.2.1.8: d_{state} = {share:g} d_0 >= S_D(T_{state}) at {100 * damping:.0f} %, "
-        f"T_{state} = {factor:g} pi "
-        f"sqrt(d_{state}/a(d_{state})) [C8.7.1.{11 if late else 10}], [C8.7.1.12]",
+        f"NTC 2018, Circ. 7/2019 C8.7.1.2.1.8: d_{state} = {share:g} d_0 >= S_D(T_{state}) at {100 * damping:.0f} %, T_{state} = "
+        f"{factor:g} pi sqrt(d_{state}/a(d_{state})) [C8.7.1.{11 if late else 10}], [C8.7.1.12]",
         f"T_{state} = {period:.3f} s",
         CODE,
         scope=SCOPE,

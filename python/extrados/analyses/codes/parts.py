@@ -63,7 +63,7 @@ def en1998(part: Part, peak: float | None, state: str = "SD", spectrum: Callable
     elif part.loaded:
         barred = "a wall that carries floors is a structural element, not a part"
     elif not part.elevated:
-        barred = "the part is assumed to be supported by the ground: for a part of a building, give base_height and building_height"
+        barred = "the part is assumed to be supported by the ground: for a part of a building, give `base_height` and `building_height`"
     elif part.shaken:
         if part.period is None:
             barred = (

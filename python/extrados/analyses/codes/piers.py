@@ -109,7 +109,7 @@ def ntc_piers(p: Pier, factor: float, partial: float, demand: float | None, stat
     ]
     b = float(np.clip(p.height / p.width, 1.0, 1.5))
     if p.diagonal is None:
-        irregular = "the deck does not give tau_0 (key diagonal_strength)"
+        irregular = "the deck does not give tau_0 (key `diagonal_strength`)"
     else:
         irregular = "" if p.interlocking is None else "interlocking is given, so the masonry is regular [C8.7.1.17]"
     tension = 1.5 * (p.diagonal or 0.0) / d
@@ -266,7 +266,7 @@ def asce41_piers(p: Pier, factor: float, demand: float | None, ductility: float,
             forced,
             "ASCE 41",
             state,
-            "" if split else "the deck does not give tau_0 (key diagonal_strength)",
+            "" if split else "the deck does not give tau_0 (key `diagonal_strength`)",
         )
     )
     return lines

@@ -22,22 +22,20 @@ class CodeChecks(BuildingAnalysis):
     view: ClassVar = ""
     structures: ClassVar = ("block", "column", "panel", "brickwork")
     spectrum: CodeSpectrum | None = key(
-        None, ("elastic spectrum of the code at the site, which gives the demand; default: that of a `compatible` motion")
+        None, "elastic spectrum of the code at the site, which gives the demand; default: that of a `compatible` motion"
     )
     peak_acceleration: Acceleration | None = key(None, "demand a_g S, as an acceleration; default: from the spectrum", gt=0)
     peak_velocity: Velocity | None = key(None, "demand of Ishiyama's rule", gt=0)
     motion_spectrum: bool = key(
-        False, ("if no code spectrum is given: use the response spectrum and the peak velocity of the motion in the deck")
+        False, "if no code spectrum is given: use the response spectrum and the peak velocity of the motion in the deck"
     )
     pulse_period: Time | None = key(
         None, "period of the sine for the formula of Housner, which considers one half cycle; adds this check", gt=0
     )
     behaviour_factor: float | None = key(
         None,
-        (
-            "behaviour factor q, for the linear check of a mechanism and for the demand on a pier (for ASCE "
-            "41: its m factor); default 2 (NTC), 1.5 (EN 1998), 1 (ASCE 41)"
-        ),
+        "behaviour factor q, for the linear check of a mechanism and for the demand on a pier (for ASCE "
+        "41: its m factor); default 2 (NTC), 1.5 (EN 1998), 1 (ASCE 41)",
         ge=1,
         le=6,
         source="Circ. 7/2019, C8.7.1.2.1.7",
@@ -81,36 +79,28 @@ class Verification(Table):
     peak_acceleration: ClassVar = None
     method: Literal["N2", "capacity-spectrum", "coefficient"] | None = key(
         None,
-        (
-            "method that gives the displacement demand. N2: equivalent oscillator (EN 1998-1, Annex B); "
-            "capacity-spectrum: capacity spectrum method; coefficient: coefficient method of ASCE 41. "
-            "Default: coefficient (ASCE41), N2 (others)"
-        ),
+        "method that gives the displacement demand. N2: equivalent oscillator (EN 1998-1, Annex B); capacity-spectrum: capacity "
+        "spectrum method; coefficient: coefficient method of ASCE 41. Default: coefficient (ASCE41), N2 (others)",
     )
     secant: float = key(
         0.7,
-        (
-            "share of the greatest base shear at which the bilinear curve meets the capacity curve, which "
-            "gives its stiffness; 0.6 is the general rule of C7.3.4.2"
-        ),
+        "share of the greatest base shear at which the bilinear curve meets the capacity curve, which "
+        "gives its stiffness; 0.6 is the general rule of C7.3.4.2",
         ge=0.5,
         le=0.9,
         source="NTC 2018 7.8.1.6",
     )
     quality: float = key(
         0.33,
-        ("factor k on the hysteretic damping, in the capacity spectrum method: 1, 0.66 or 0.33 for high, moderate or low dissipation"),
+        "factor k on the hysteretic damping, in the capacity spectrum method: 1, 0.66 or 0.33 for high, moderate or low dissipation",
         ge=0,
         le=1,
         source="Circ. 7/2019 [C7.3.10]",
     )
     shape: Literal["displaced", "mode"] = key(
         "displaced",
-        (
-            "mode shape phi for the equivalent mass. displaced: elastic displacement under the horizontal "
-            "forces; mode: mode with the greatest participating mass along the load (this mass can be small "
-            "with flexible floors)"
-        ),
+        "mode shape phi for the equivalent mass. displaced: elastic displacement under the horizontal forces; mode: mode with the "
+        "greatest participating mass along the load (this mass can be small with flexible floors)",
         source="Circ. 7/2019 C7.3.4.2: first mode",
     )
     spectrum: CodeSpectrum | None = key(
@@ -120,10 +110,7 @@ class Verification(Table):
 
     motions: int | None = key(
         None,
-        (
-            "number of motions of the set in [motion] for a fragility curve: N2 with the spectrum of each "
-            "motion; default: no fragility curve"
-        ),
+        "number of motions of the set in [motion] for a fragility curve: N2 with the spectrum of each motion; default: no fragility curve",
         ge=2,
         le=10_000,
     )
@@ -142,10 +129,7 @@ class Floor(Table):
     load: Force = key(0.0, "weight of a load that rests on the wall (P)", ge=0, source="Circ. 7/2019 [C8.7.1.1]")
     pushing: Force = key(
         0.0,
-        (
-            "weight of a load that pushes the wall by its mass but does not rest on it (Q): it drives the "
-            "mechanism and does not stabilise it"
-        ),
+        "weight of a load that pushes the wall by its mass but does not rest on it (Q): it drives the mechanism and does not stabilise it",
         ge=0,
         source="Circ. 7/2019 [C8.7.1.1]",
     )
@@ -222,12 +206,10 @@ class LocalMechanism(BuildingAnalysis):
     mechanism: Literal[
         "facade", "corner", "gable", "parapet", "chimney", "wall", "tower", "vertical-bending", "horizontal-bending", "building"
     ] = key(
-        about=(
-            "kind of mechanism. Of one wall: facade, corner of two walls, gable, parapet or chimney on a "
-            "building, free-standing wall, tower as one body, vertical bending between floors, horizontal "
-            "bending between side walls. `building`: the collapse mechanism of the [structure] of the deck "
-            "(triumphal arches, bridges, vaults), or the walls of a building in plan"
-        )
+        about="kind of mechanism. Of one wall: facade, corner of two walls, gable, parapet or chimney on a "
+        "building, free-standing wall, tower as one body, vertical bending between floors, horizontal "
+        "bending between side walls. `building`: the collapse mechanism of the [structure] of the deck "
+        "(triumphal arches, bridges, vaults), or the walls of a building in plan"
     )
     height: Length | None = key(None, "height of the body that overturns, above the foot of the wall", gt=0)
     thickness: Length | None = key(None, "thickness at the hinge", gt=0)
@@ -240,11 +222,8 @@ class LocalMechanism(BuildingAnalysis):
     wings: list[Wing] = key([], "further parts of a facade that overturn with it", max_length=20)
     abutment_force: Force | None = key(
         None,
-        (
-            "for horizontal bending: force H that each side wall (or its tie) resists against the thrust of "
-            "the strip. Default: the side walls do not move, for instance between neighbouring walls; the "
-            "strip then crushes at `compressive_strength` of [material]"
-        ),
+        "for horizontal bending: force H that each side wall (or its tie) resists against the thrust of the strip. Default: the side "
+        "walls do not move, for instance between neighbouring walls; the strip then crushes at `compressive_strength` of [material]",
         gt=0,
     )
     interlocking: Interlocking | None = key(
@@ -256,7 +235,7 @@ class LocalMechanism(BuildingAnalysis):
     peak_acceleration: Acceleration | None = key(None, "demand a_g S, as an acceleration; default: from the spectrum", gt=0)
     collapse_spectrum: CodeSpectrum | None = key(
         None,
-        ("elastic spectrum of the site for the limit state of collapse, SLC; adds the check of d_SLC to the checks at SLV"),
+        "elastic spectrum of the site for the limit state of collapse, SLC; adds the check of d_SLC to the checks at SLV",
         source="Circ. 7/2019, C8.7.1.2.1.8",
     )
     motion_spectrum: bool = key(False, "if no code spectrum is given: use the response spectrum of the motion in the deck")
@@ -269,22 +248,19 @@ class LocalMechanism(BuildingAnalysis):
     )
     confidence_factor: float | None = key(
         None,
-        ("confidence factor FC; default: from [code]; that of LC1 (1.35) if the compressive strength is neglected"),
+        "confidence factor FC; default: from [code]; that of LC1 (1.35) if the compressive strength is neglected",
         ge=1,
         le=2,
         source="Circ. 7/2019, C8.7.1.2.1.3, Table C8.5.IV",
     )
     base_height: Length | None = key(
         None,
-        (
-            "height z of the mechanism above the foundation. If z is above 0, the building amplifies the "
-            "motion. Default for blocks: the lowest hinge between moving and fixed parts; for a table: "
-            "`hinge_height`"
-        ),
+        "height z of the mechanism above the foundation. If z is above 0, the building amplifies the motion. Default for blocks: the "
+        "lowest hinge between moving and fixed parts; for a table: `hinge_height`",
         ge=0,
     )
     building_height: Length | None = key(
-        None, ("height H of the building, required if z is above 0. Default for blocks: the top of all parts; for a table: `height`"), gt=0
+        None, "height H of the building, required if z is above 0. Default for blocks: the top of all parts; for a table: `height`", gt=0
     )
     building_period: Time | None = key(None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6")
     storeys: int | None = key(
@@ -301,19 +277,19 @@ class LocalMechanism(BuildingAnalysis):
     )
     period: Time | None = key(
         None,
-        ("period T_0 of a part that vibrates freely; default: calculated from `young` of [material], if given"),
+        "period T_0 of a part that vibrates freely; default: calculated from `young` of [material], if given",
         gt=0,
         source="Circ. 7/2019 [C8.7.1.7]",
     )
     one_second_acceleration: Acceleration | None = key(
-        None, ("spectral acceleration S_X1; adds the slenderness limits of ASCE 41 for walls anchored at their top"), gt=0
+        None, "spectral acceleration S_X1; adds the slenderness limits of ASCE 41 for walls anchored at their top", gt=0
     )
     storey: Literal["one-story", "first", "top", "other"] = key("one-story", "storey of the wall, for ASCE 41")
 
     @model_validator(mode="after")
     def _one_building(self) -> "LocalMechanism":
         if self.modes and (given := sorted({"building_period", "storeys"} & self.model_fields_set)):
-            raise ValueError(f"the key `modes` already gives the value of `{given[0]}`: remove `{given[0]}`")
+            raise ValueError(f"{given[0]}: the key `modes` already gives this value: remove this key")
         return self
 
     @model_validator(mode="after")

@@ -172,7 +172,7 @@ def verify(
             carried,
             ("motion", "limit_state"),
             "g",
-            (f"peak ground acceleration that the building can carry at {', '.join(known_states)}, for each motion"),
+            f"peak ground acceleration that the building can carry at {', '.join(known_states)}, for each motion",
         )
     if code.jurisdiction == "NZSEE" and (found := least("ULS")) is not None:
         more["nbs_percent"] = 100.0 * found

@@ -38,7 +38,7 @@ def beta_for_restitution(building: Building, values: JointValues) -> float:
     most, least = found(low), found(high)
     if not least - ACCURACY <= wanted <= most:
         raise Refused(
-            (f"no damping of this block gives a coefficient of restitution of {wanted:.3g}: give a value from {least:.3g} to {most:.3g}"),
+            f"no damping of this block gives a coefficient of restitution of {wanted:.3g}: give a value from {least:.3g} to {most:.3g}",
             ("joints", "restitution" if joints.energy_ratio is None else "energy_ratio"),
         )
     while high / low > 1.01:

@@ -96,7 +96,6 @@ class Search:
         return {
             "end_time": end + self.settle,
             "output_step": output_step,
-            "fraction": self.options.fraction,
             **self.collapse.options,
             "settle_damping": self.curves[curve].values.settle_damping,
             "stop_at_rest": True,
@@ -116,7 +115,8 @@ def _of_section(search: Search, model: Model) -> Callable[[list[Pulse], float], 
     def task(curve: int, amplitude: float, duration: float, output_step: float) -> Task:
         motion = unit_pulse(search.options.pulse, duration)
         given = search.core_options(curve, motion.end, output_step)
-        options = dem.Options(**given, settlement=settlement[curve], mass_damping=search.options.mass_damping)
+        fraction = search.options.step_fraction(space=False)
+        options = dem.Options(**given, fraction=fraction, settlement=settlement[curve], mass_damping=search.options.mass_damping)
         return Task(curve, options, motion.ground, amplitude, shift)
 
     return lambda pulses, output_step: Runs(bodies, [task(*one, output_step) for one in pulses])
@@ -130,7 +130,8 @@ def _of_solids(search: Search, model: SolidModel) -> Callable[[list[Pulse], floa
     def task(curve: int, amplitude: float, duration: float, output_step: float) -> SolidTask:
         motion = unit_pulse(search.options.pulse, duration)
         given = search.core_options(curve, motion.end, output_step)
-        options = dem3.Options(**given, settlement=settlement[curve], way=search.options.way)
+        fraction = search.options.step_fraction(space=True)
+        options = dem3.Options(**given, fraction=fraction, settlement=settlement[curve], way=search.options.way)
         return SolidTask(options, motion.ground, scale=amplitude)
 
     return lambda pulses, output_step: SolidRuns(bodies, [task(*one, output_step) for one in pulses])
@@ -204,7 +205,7 @@ def _found(context: Context, options: DemDomain, model: Model | SolidModel, vari
                 checked,
                 ("solver", "amplitude", "duration"),
                 "",
-                ("1 if the pulse causes collapse, for each cell of the map. Solver 0: solver of the deck; solver 1: the other solver"),
+                "1 if the pulse causes collapse, for each cell of the map. Solver 0: solver of the deck; solver 1: the other solver",
             ),
         }
         if numbers["cross_check"].agreement_ratio < AGREE:
@@ -262,9 +263,8 @@ def _apart(check: out.CrossCheck) -> str:
     """Where the two solvers do not agree, in words."""
     where = "; ".join(
         (
-            f"a pulse of {c.amplitude_g:.3g} g and {c.duration_s:.3g} s {('collapses' if c.fails_as_given else 'stands')} "
-            f"by the solver of the deck, and {('collapses' if c.fails_by_the_other else 'stands')} by the "
-            "other solver"
+            f"a pulse of {c.amplitude_g:.3g} g and {c.duration_s:.3g} s {('collapses' if c.fails_as_given else 'stands')} by the solver "
+            f"of the deck, and {('collapses' if c.fails_by_the_other else 'stands')} by the other solver"
         )
         for c in check.apart[:8]
     )

@@ -123,6 +123,6 @@ def force_arrays(model: Model | SolidModel, run: dem_run.FoundRun) -> dict[str, 
             reactions(model, run),
             ("time", axis),
             "N",
-            ("force of the ground on the blocks, at the initial contacts and at the anchors of ties and dampers"),
+            "force of the ground on the blocks, at the initial contacts and at the anchors of ties and dampers",
         ),
     }

@@ -158,7 +158,7 @@ def adjusted(model: Model) -> list[str]:
     if rigid.moved > 1e-6 * model.size:
         found.append(
             f"the program moved faces of blocks by up to {1000.0 * rigid.moved:.2g} mm, so that they meet at "
-            f"their joints (contact_tolerance {1000.0 * tolerance:g} mm)"
+            f"their joints (`contact_tolerance` {1000.0 * tolerance:g} mm)"
         )
     if rigid.cut > 0.0:
         why = f"contact_tolerance {1e3 * tolerance:g} mm" if tolerance else "arcs are drawn by chords"
@@ -203,9 +203,8 @@ def unconverged(effort: dem_run.Effort) -> list[str]:
         return []
     return [
         (
-            f"the contacts did not converge in {effort.open_steps} of {effort.steps} steps. The greatest "
-            f"error, at {effort.worst:.4g} s, is {effort.residual:.2g} of the velocity that gravity adds in one "
-            "step. Try a smaller `time_step`"
+            f"the contacts did not converge in {effort.open_steps} of {effort.steps} steps. The greatest error, at {effort.worst:.4g} "
+            f"s, is {effort.residual:.2g} of the velocity that gravity adds in one step. Try a smaller `time_step`"
         )
     ]
 

@@ -64,8 +64,8 @@ def _refuse_long(options: tables.Dem, blocks: int, joints: int) -> None:
     most = SHARE * room.total() / (8.0 * values)
     if options.end_time / options.output_step > most:
         raise Refused(
-            f"a history of {options.end_time:g} s in steps of {options.output_step:g} s is too long to store: give an "
-            f"output_step of at least {options.end_time / most:.2g} s",
+            f"a history of {options.end_time:g} s in steps of {options.output_step:g} s is too long to store: "
+            f"give an `output_step` of at least {options.end_time / most:.2g} s",
             ("analysis", "output_step"),
         )
 
@@ -80,13 +80,13 @@ def _refuse_bars(building: Building) -> None:
     if not isinstance(building.blocks(), ArchAssembly):
         raise Refused('merge = "three-bars" is only for arches: remove `merge`', key)
     if building.initial.rotation_ratio:
-        raise Refused(('merged voussoirs cannot start with a rotation: with `rotation_ratio` of [initial], give merge = "none"'), key)
+        raise Refused('merged voussoirs cannot start with a rotation: with `rotation_ratio` of [initial], give merge = "none"', key)
 
 
 def _refuse_springs(building: Building) -> None:
     """Refused where rigid contacts are asked for what only springs have."""
     if building.supports.stiffness is not None:
-        raise Refused('rigid contacts (solver = "nonsmooth", or cross_check) have no springs', ("supports", "stiffness"))
+        raise Refused('rigid contacts (solver = "nonsmooth", or `cross_check`) have no springs', ("supports", "stiffness"))
 
 
 def _refuse_crushing(building: Building, rigid: bool) -> None:

@@ -170,5 +170,5 @@ def doubts_of_run(model: Model | SolidModel, found: dem_run.FoundRun, violated: 
             "reactions and the base shear do not include the forces of these contacts"
         )
     if still_moving:
-        doubts.append("the structure still moves at the end of the run: a later end_time may change the outcome")
+        doubts.append("the structure still moves at the end of the run: a later `end_time` may change the outcome")
     return doubts

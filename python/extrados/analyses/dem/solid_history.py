@@ -37,7 +37,7 @@ def core_options(context: Context, options: Dem, model: SolidModel) -> dem3.Opti
         end_time=options.end_time or quiet + dem_model.settle_time(model),
         output_step=options.output_step,
         step=options.time_step or 0.0,
-        fraction=options.fraction,
+        fraction=options.step_fraction(space=True),
         settle_damping=model.values.settle_damping,
         domain=options.domain * model.size + far,
         settlement=farthest_settlement(model, options.rigid),

@@ -175,10 +175,8 @@ def refuse_shoves(building: Building, assembly: SolidAssembly) -> None:
     for k, one in enumerate(building.initial.movements):
         if one.dy:
             raise Refused(
-                (
-                    "`dy` moves a support of this section sideways (in space, y is across its depth): give `dz` for "
-                    "a settlement (z is upward in space)"
-                ),
+                "`dy` moves a support of this section sideways (in space, y is across its depth): give `dz` for "
+                "a settlement (z is upward in space)",
                 ("initial", "movements", k, "dy"),
             )
 

@@ -25,9 +25,8 @@ WEDGED = (
     "limit analysis does not prove collapse: friction may hold a wedged block by forces that discrete elements do not have at the start"
 )
 JAMMED = (
-    "with rigid contacts the structure is in equilibrium, but perhaps only by forces that "
-    "self-weight alone does not produce (a block wedged by friction). Springs start without such "
-    "forces, and with springs"
+    "with rigid contacts the structure is in equilibrium, but perhaps only by forces that self-weight alone does not produce (a block "
+    "wedged by friction). Springs start without such forces, and with springs"
 )
 #: Steps of springs in which cases/solid/dem-cross-vault comes to rest, 14 times over
 SETTLING = 20_000

@@ -59,7 +59,7 @@ def section_strands(building: Building) -> tuple[Strand, ...]:
         last = GROUND if damper.end is None else stone_at(assembly, points[1], damper.end_stone, f"{what}, end", key, "end")
         if first == last:
             raise BadGeometry(
-                (f"{what}: both ends are in the block '{assembly.block_names[first]}'. Move one end into another block, or to the ground"),
+                f"{what}: both ends are in the block '{assembly.block_names[first]}'. Move one end into another block, or to the ground",
                 key,
             )
         flat = np.column_stack([points, np.zeros(2)])

@@ -177,10 +177,8 @@ def capacities(context: Context, options: Dem, job: Callable[[list[float]], Any]
     for sense, run in zip(SENSES, last, strict=True):
         if run is None:
             raise Refused(
-                (
-                    f"the structure is stable at {options.tilt_limit / GRAVITY:g} g towards {('+x' if sense > 0 else '-x')}: "
-                    "increase `tilt_limit`"
-                ),
+                f"the structure is stable at {options.tilt_limit / GRAVITY:g} g towards {('+x' if sense > 0 else '-x')}: "
+                "increase `tilt_limit`",
                 ("analysis", "tilt_limit"),
             )
     while True:

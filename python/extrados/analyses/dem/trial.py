@@ -47,7 +47,7 @@ def core_options(context: Context, options: Dem, model: Model, begin: float = 0.
         end_time=(options.end_time or quiet + dem_model.settle_time(model)) - begin,
         output_step=options.output_step,
         step=options.time_step or 0.0,
-        fraction=options.fraction,
+        fraction=options.step_fraction(space=False),
         settle_damping=model.values.settle_damping,
         domain=domain_of(model, options, far),
         stop_at_rest=options.end_time is None,

@@ -124,9 +124,8 @@ def solid_tilt_answer(r: SolidDemTilt) -> str:
     return (
         (
             f"Collapse under a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} "
-            f"degrees in plan (a tilt of {r.tilt_angle_deg:.2f} deg), and of {r.collapse_acceleration_opposite_g:.4f} "
-            f"g in the opposite direction. The lower value is {least:.4f} g. Contacts that open or slide at "
-            f"collapse: {where}.{_tied(r.ties)}"
+            f"degrees in plan (a tilt of {r.tilt_angle_deg:.2f} deg), and of {r.collapse_acceleration_opposite_g:.4f} g in the opposite "
+            f"direction. The lower value is {least:.4f} g. Contacts that open or slide at collapse: {where}.{_tied(r.ties)}"
         )
         + (f" {ONE_PATH}" if r.interval else "")
         + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")

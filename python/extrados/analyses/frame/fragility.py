@@ -196,10 +196,8 @@ def run(context: Context, options: FrameFragility) -> Result:
     """Curves of all limit states; see the deck reference."""
     if options.uncertain and options.frame.confidence_factor != 1.0:
         raise Refused(
-            (
-                "uncertain strengths scatter about their mean values, which a confidence factor must not reduce: "
-                "remove `confidence_factor` of [analysis.frame]"
-            ),
+            "uncertain strengths scatter about their mean values, which a confidence factor must not reduce: "
+            "remove `confidence_factor` of [analysis.frame]",
             ("analysis", "frame", "confidence_factor"),
         )
     frame = context.building.frame(options.frame)

@@ -35,7 +35,7 @@ def _control(context: Context, options: FramePushover) -> None:
     levels = {one.level for one in context.building.frame(options.frame).masses}
     if options.control_level not in levels:
         raise Refused(
-            f"control_level is {options.control_level}: give a level that has masses: {', '.join(map(str, sorted(levels)))}",
+            f"`control_level` is {options.control_level}: give a level that has masses: {', '.join(map(str, sorted(levels)))}",
             ("analysis", "control_level"),
         )
 

@@ -317,9 +317,8 @@ def _arrays(result: Result, frame: EquivalentFrame, paths: Sequence[Path]) -> No
 def _answer(r: out.FramePushover) -> str:
     worst = next(row for row in r.runs if row.name == r.governing)
     text = (
-        f"The least base shear of {len(r.runs)} pushovers is {r.base_shear_N / 1000.0:.3g} kN ({r.base_shear_N / r.weight_N:.3g} "
-        f"of the weight), in the pushover {worst.name}, at a displacement of {1000.0 * worst.displacement_at_peak_m:.3g} "
-        "mm."
+        f"The least base shear of {len(r.runs)} pushovers is {r.base_shear_N / 1000.0:.3g} kN ({r.base_shear_N / r.weight_N:.3g} of the "
+        f"weight), in the pushover {worst.name}, at a displacement of {1000.0 * worst.displacement_at_peak_m:.3g} mm."
     )
     if worst.ultimate_displacement_m is not None:
         text += f" In this pushover, the ultimate displacement is {1000.0 * worst.ultimate_displacement_m:.3g} mm."

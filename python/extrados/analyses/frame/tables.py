@@ -79,11 +79,8 @@ class FramePushover(FrameAnalysis):
     senses: list[Literal["+", "-"]] = key(["+", "-"], "senses of each direction", min_length=1, max_length=2)
     patterns: list[Literal["uniform", "static", "modal"]] = key(
         ["uniform", "static"],
-        (
-            "patterns of the horizontal forces. uniform: in proportion to the masses; static: in proportion "
-            "to the masses times their height; modal: in proportion to the masses times the mode with the "
-            "greatest participating mass"
-        ),
+        "patterns of the horizontal forces. uniform: in proportion to the masses; static: in proportion to the masses times their "
+        "height; modal: in proportion to the masses times the mode with the greatest participating mass",
         min_length=1,
         max_length=3,
         source="NTC 2018, 7.3.4.2",
@@ -98,32 +95,26 @@ class FramePushover(FrameAnalysis):
     verification: Verification = key(Verification(), "verification by displacement, [analysis.verification]")
     out_of_plane: bool = key(
         True,
-        (
-            "with a seismic action: check each wall, above the foot of each storey, for out-of-plane failure "
-            "by `local-mechanism`. The floor spectrum uses the period of the frame"
-        ),
+        "with a seismic action: check each wall, above the foot of each storey, for out-of-plane failure "
+        "by `local-mechanism`. The floor spectrum uses the period of the frame",
     )
     deflected_walls: bool = key(
         True,
-        (
-            "calculate the greatest constant acceleration that each wall carries out of its plane, with "
-            "cracking, crushing and second-order effects of its deflection between rigid floors"
-        ),
+        "calculate the greatest constant acceleration that each wall carries out of its plane, with "
+        "cracking, crushing and second-order effects of its deflection between rigid floors",
         source="after Vanin, Penna and Beyer 2020",
     )
     control_level: int | None = key(
         None,
-        (
-            "number of the control storey. The control displacement is the mean displacement at the top of "
-            "this storey, weighted by the masses; default: the highest storey with masses"
-        ),
+        "number of the control storey. The control displacement is the mean displacement at the top of "
+        "this storey, weighted by the masses; default: the highest storey with masses",
         ge=1,
     )
     target_drift: float = key(0.02, "greatest control displacement, divided by the height of the control level", gt=0, le=0.2)
     steps: int = key(200, "number of steps up to the target; a step is divided if necessary", ge=10, le=10_000)
     drop: float = key(
         0.5,
-        ("the run ends when the base shear drops below this share of its greatest value; 0.8 means the 20 % decrease of codes"),
+        "the run ends when the base shear drops below this share of its greatest value; 0.8 means the 20 % decrease of codes",
         ge=0,
         le=0.95,
     )
@@ -146,10 +137,8 @@ class FrameMotion(FrameAnalysis):
     damping_ratio: float = key(0.03, "damping ratio of the Rayleigh damping at its two frequencies", ge=0, le=0.5)
     damping_frequencies: list[Annotated[float, Field(gt=0)]] | None = key(
         None,
-        (
-            "two frequencies in Hz at which the damping ratio applies; default: the first frequency along "
-            "the motion, and three times this value"
-        ),
+        "two frequencies in Hz at which the damping ratio applies; default: the first frequency along "
+        "the motion, and three times this value",
         min_length=2,
         max_length=2,
     )
@@ -170,10 +159,8 @@ class FrameFragility(FrameMotion):
     starter_motion: ClassVar = "generated"
     by: Literal["history", "pushover"] = key(
         "history",
-        (
-            "method. history: response of the frame to each record; pushover: N2 with the spectrum of each "
-            "record, for the capacity curves in both senses"
-        ),
+        "method. history: response of the frame to each record; pushover: N2 with the spectrum of each "
+        "record, for the capacity curves in both senses",
         source="Fajfar 2000",
     )
     patterns: list[Literal["uniform", "static", "modal"]] = key(
@@ -185,15 +172,15 @@ class FrameFragility(FrameMotion):
     count: int | None = key(None, "number of motions; default 100, or the whole set", ge=2, le=1_000_000)
     seed: int | None = key(
         None,
-        ("seed of the random numbers, for the uncertain values and (instead of its own seed) for a generated set of motions"),
+        "seed of the random numbers, for the uncertain values and (instead of its own seed) for a generated set of motions",
         ge=0,
         le=2**62,
     )
-    intensity: Literal["pga", "sa"] = key("pga", "intensity measure of the motions. pga: PGA [g]; sa: SA(sa_period) [g]")
+    intensity: Literal["pga", "sa"] = key("pga", "intensity measure of the motions. pga: PGA [g]; sa: SA(`sa_period`) [g]")
     sa_period: Time | None = key(None, "period of SA", gt=0)
     levels: list[Annotated[float, Field(gt=0, le=100)]] | None = key(
         None,
-        ('for by = "history": intensities [g] to which each motion is scaled; default: the motions are not scaled'),
+        'for by = "history": intensities [g] to which each motion is scaled; default: the motions are not scaled',
         min_length=1,
         max_length=200,
     )
@@ -212,7 +199,7 @@ class FrameFragility(FrameMotion):
     @model_validator(mode="after")
     def _sensible(self) -> "FrameFragility":
         if (self.intensity == "sa") != (self.sa_period is not None):
-            raise ValueError('intensity = "sa" requires sa_period, and sa_period requires intensity = "sa"')
+            raise ValueError('intensity = "sa" requires `sa_period`, and `sa_period` requires intensity = "sa"')
         if self.by == "pushover" and self.levels is not None:
             raise ValueError(
                 'the key `levels` is used only with by = "history", because N2 calculates the intensity at which '

@@ -79,7 +79,7 @@ def place_of(assembly: SolidAssembly, load: AppliedLoad, number: int) -> tuple[i
     key = ("analysis", "load", number)
     if load.x_end is not None or load.y is None:
         raise Refused(
-            ("a load on blocks in space acts at a point: give `x` and `y` in plan. If the load does not act on the top, also give `z`"), key
+            "a load on blocks in space acts at a point: give `x` and `y` in plan. If the load does not act on the top, also give `z`", key
         )
     if load.z is not None:
         point = np.array([load.x, load.y, load.z])

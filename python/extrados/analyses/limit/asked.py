@@ -152,10 +152,8 @@ def deviation_of(building: Building, options: Imperfections) -> float:
     shortest = float(extent.min())
     if 4.0 * deviation > shortest:
         raise Refused(
-            (
-                f"a `deviation` of {1000.0 * deviation:.3g} mm is more than 1/4 of the {('shortest' if plane else 'narrowest')} "
-                f"joint, '{stones.joint_names[int(extent.argmin())]}' ({1000.0 * shortest:.3g} mm)"
-            ),
+            f"a `deviation` of {1000.0 * deviation:.3g} mm is more than 1/4 of the {('shortest' if plane else 'narrowest')} "
+            f"joint, '{stones.joint_names[int(extent.argmin())]}' ({1000.0 * shortest:.3g} mm)",
             ("analysis", "deviation"),
         )
     return float(deviation)
@@ -237,10 +235,8 @@ def _cut(
     if turn is None and (central := np.flatnonzero(far < 1e-6 * assembly.size)).size:
         if otherwise is None:
             raise Refused(
-                (
-                    f"section '{table.name}': the contact '{assembly.joint_names[int(contacts[central[0]])]}' lies in "
-                    "the middle of the structure and has no outward direction: give the key `toward`"
-                ),
+                f"section '{table.name}': the contact '{assembly.joint_names[int(contacts[central[0]])]}' lies in "
+                "the middle of the structure and has no outward direction: give the key `toward`",
                 key,
             )
         turn = otherwise

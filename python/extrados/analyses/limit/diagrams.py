@@ -49,9 +49,7 @@ def diagram_of(assembly: SolidAssembly, form: Form, lines: int, meridians: int) 
     columns = columns_of(assembly, np.concatenate([inside, between]))
     if np.isnan(columns.low).any():
         x, y = np.concatenate([points, between])[int(np.flatnonzero(np.isnan(columns.low))[0])]
-        raise Refused(
-            (f"no block is above or below the branches of the diagram at x = {x:.3g} m, y = {y:.3g} m: give another `form`"), FORM
-        )
+        raise Refused(f"no block is above or below the branches of the diagram at x = {x:.3g} m, y = {y:.3g} m: give another `form`", FORM)
     weight = _weights(assembly, points)
     if form == "radial":  # the nodes of a hoop carry alike
         rings = len(points) // meridians * meridians
@@ -104,7 +102,7 @@ def _radial(
     around = np.column_stack([np.cos(turn), np.sin(turn)])
     crossed = [[end[0] for bed in beds for end in _ends(bed, centre, way)[0] if end[0] > 0.0] for way in around]
     if not all(crossed):
-        raise Refused(("a radial diagram requires supports all around, but one meridian ends beside them: give another `form`"), FORM)
+        raise Refused("a radial diagram requires supports all around, but one meridian ends beside them: give another `form`", FORM)
     feet = np.array([0.5 * (min(ends) + max(ends)) for ends in crossed])
     radius = float(feet.mean())
     reach = np.linspace(0.0, radius, PROFILE)
@@ -189,7 +187,7 @@ def _supports(
         outward[k] = _unit(points[node] - (points[free].mean(axis=0) if len(free) else middle))
         cut = _cut(beds, inside[node], outward[k])
         if cut is None:
-            raise Refused(("a node of the diagram lies on the edge of a support: give another `form`, or another number of `lines`"), FORM)
+            raise Refused("a node of the diagram lies on the edge of a support: give another `form`, or another number of `lines`", FORM)
         seat[k] = cut
     return support, outward, seat
 
@@ -241,7 +239,7 @@ def _weights(assembly: SolidAssembly, points: np.ndarray) -> np.ndarray:
     void = (columns.high - columns.low - columns.depth)[there] > VOID * (columns.high - columns.low)[there]
     if void.mean() > VOID:
         raise Refused(
-            ("vertical lines cross voids between the blocks, but a thrust network requires a single layer of masonry"), ("structure",)
+            "vertical lines cross voids between the blocks, but a thrust network requires a single layer of masonry", ("structure",)
         )
     nearest = cKDTree(points)
     share = np.bincount(nearest.query(samples[there])[1], columns.mass[there], len(points))

@@ -128,16 +128,15 @@ def run(context: Context, options: Imperfections) -> Result:
             gamma,
             ("survey", "sense"),
             "g",
-            ("capacity in both senses (towards +x or along the direction; then opposite); NaN if a geometry cannot stand"),
+            "capacity in both senses (towards +x or along the direction; then opposite); NaN if a geometry cannot stand",
         ),
     }
     senses = ("along", "opposite") if in_space(building, options) else ("to_right", "to_left")
     columns = dict(zip(senses, gamma.T, strict=True))
     result.tables = {"imperfections": TableData({"survey": list(range(1, options.count + 1)), **columns}, dict.fromkeys(columns, "g"))}
     result.answer = (
-        f"Of {options.count} random geometries, whose points lie within {1e3 * deviation:.3g} mm of the given geometry, "
-        f"90 % have a capacity of "
-        f"{low:.4f} to {high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g). The given geometry has {given:.4f} "
+        f"Of {options.count} random geometries, whose points lie within {1e3 * deviation:.3g} mm of the given geometry, 90 % have a "
+        f"capacity of {low:.4f} to {high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g). The given geometry has {given:.4f} "
         "g."
     )
     if fallen:
@@ -146,10 +145,9 @@ def run(context: Context, options: Imperfections) -> Result:
         result.answer += f" In {r.upper_bounds} geometries joints slide, so the capacity is an {out.DILATANT}."
     if given < low:
         result.warnings.append(
-            f"The capacity of the given geometry, {given:.4f} g, is below the range of the random geometries. In "
-            "a bond, several corners can meet at one hinge, and the hinge forms at the outermost one. "
-            "Random deviations of the corners move the hinge outward and raise the capacity. The verdict "
-            "uses the capacity of the given geometry"
+            f"The capacity of the given geometry, {given:.4f} g, is below the range of the random geometries. In a bond, several "
+            "corners can meet at one hinge, and the hinge forms at the outermost one. Random deviations of the corners move the hinge "
+            "outward and raise the capacity. The verdict uses the capacity of the given geometry"
         )
     if r.without_answer:
         result.warnings.append(

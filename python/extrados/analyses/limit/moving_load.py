@@ -440,7 +440,7 @@ def _places(options: MovingLoad, train: Train, low: float, high: float) -> tuple
         back = low + high - ahead
     if len(ahead) > MOST_PLACES:
         raise Refused(
-            (f"{len(ahead)} positions of the train are more than {MOST_PLACES}: reduce `count`, or give `places`"), ("analysis", "count")
+            f"{len(ahead)} positions of the train are more than {MOST_PLACES}: reduce `count`, or give `places`", ("analysis", "count")
         )
     if not options.both_ways:
         return ahead, np.ones(len(ahead))

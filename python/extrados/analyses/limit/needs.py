@@ -68,17 +68,15 @@ def _needs_of_many(context: Context, options: BuildingAnalysis) -> Iterator[Need
 
 def _refuse_sections() -> None:
     raise Refused(
-        (
-            "the key `section` is only for blocks in space: give `direction` to analyse the blocks in space, "
-            "or the key `chain` for the plane section"
-        ),
+        "the key `section` is only for blocks in space: give `direction` to analyse the blocks in space, "
+        "or the key `chain` for the plane section",
         ("analysis", "section"),
     )
 
 
 def _refuse_mortar() -> None:
     raise Refused(
-        ('mortar = "ductile" is only for blocks in space: give `direction` to analyse the blocks in space, or remove `mortar`'),
+        'mortar = "ductile" is only for blocks in space: give `direction` to analyse the blocks in space, or remove `mortar`',
         ("analysis", "mortar"),
     )
 
@@ -132,19 +130,14 @@ def refuse_fracture(building: Building, options: tables.LimitAnalysisTable) -> N
         raise Refused("the key `fracture` requires a buttress on the ground: a vault or an aisled vault", key)
     if building.material.compressive_strength is not None or options.friction_rule != "associated":
         raise Refused(
-            (
-                "the key `fracture` excludes crushing and sliding without dilatancy: remove `fracture`, or "
-                'remove `compressive_strength` and give friction_rule = "associated"'
-            ),
+            "the key `fracture` excludes crushing and sliding without dilatancy: remove `fracture`, or "
+            'remove `compressive_strength` and give friction_rule = "associated"',
             key,
         )
     leeward = assembly.buttresses[-1]
     if building.ties and (building.anchored().block == leeward).any():
         raise Refused(
-            (
-                f"a tie is anchored in {assembly.block_names[leeward]}. The analysis does not decide whether the "
-                "crack separates the anchor from the rest of this buttress. Remove `fracture`, or anchor the "
-                "tie at another block"
-            ),
+            f"a tie is anchored in {assembly.block_names[leeward]}. The analysis does not decide whether the crack separates the anchor "
+            "from the rest of this buttress. Remove `fracture`, or anchor the tie at another block",
             key,
         )

@@ -50,9 +50,8 @@ def warn_of_mortar(building: Building, limit: SolidLimit) -> str | None:
         return None
     j = int(less[(given - limit.tension)[less].argmax()])
     return (
-        f"{len(less)} contacts carry less tension than the deck gives, because Coulomb's law allows at "
-        f"most cohesion / friction: {limit.assembly.joint_names[j]} carries {limit.tension[j] / 1000.0:.3g} "
-        f"kPa instead of {given[j] / 1000.0:.3g} kPa"
+        f"{len(less)} contacts carry less tension than the deck gives, because Coulomb's law allows at most cohesion / friction: "
+        f"{limit.assembly.joint_names[j]} carries {limit.tension[j] / 1000.0:.3g} kPa instead of {given[j] / 1000.0:.3g} kPa"
     )
 
 

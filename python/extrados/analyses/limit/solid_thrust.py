@@ -34,10 +34,8 @@ def run(context: Context, options: Thrust) -> Result:
         refuse_falling(ends[0], ends[1], first)
     if len(ends) == 2 and not -ends[1].gamma <= options.gamma <= ends[0].gamma:
         raise Refused(
-            (
-                f"at {options.gamma:g} g no admissible state of stress exists: along {first:g} degrees the blocks "
-                f"carry accelerations from {-ends[1].gamma:.4f} to {ends[0].gamma:.4f} g"
-            ),
+            f"at {options.gamma:g} g no admissible state of stress exists: along {first:g} degrees the blocks "
+            f"carry accelerations from {-ends[1].gamma:.4f} to {ends[0].gamma:.4f} g",
             ("analysis", "gamma"),
         )
     dead, live = limit.ways(first)

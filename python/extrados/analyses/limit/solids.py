@@ -147,10 +147,8 @@ def refuse_falling(there: Programme, back: Programme, first: float, neglects: tu
     if there.gamma < 0.0 or back.gamma < 0.0:
         low, high = sorted((there.gamma, -back.gamma))
         raise CannotStand(
-            (
-                f"the structure can stand only under a horizontal load between {low:.4f} and {high:.4f} g along {first:g} "
-                "degrees; certificate: the mechanism of the smaller load, in which the weights do positive work"
-            ),
+            f"the structure can stand only under a horizontal load between {low:.4f} and {high:.4f} g along {first:g} "
+            "degrees; certificate: the mechanism of the smaller load, in which the weights do positive work",
             neglects=neglects,
         )
 
@@ -411,9 +409,8 @@ def _told(r: out.SolidTilt) -> str:
         least = "none" if row.least_g is None else f"{row.least_g:.4f} g"
         most = "none" if row.associated_g is None else f"{row.associated_g:.4f} g"
         text += (
-            f"Without dilatancy, along {row.direction_deg % 360.0:g} degrees in plan: the design value is {design} "
-            f"(the lowest of {len(row.load_paths)} load paths with elastic joints), the lowest value found "
-            f"is {least}, and the upper bound is {most}. "
+            f"Without dilatancy, along {row.direction_deg % 360.0:g} degrees in plan: the design value is {design} (the lowest of "
+            f"{len(row.load_paths)} load paths with elastic joints), the lowest value found is {least}, and the upper bound is {most}. "
         )
     if r.non_associated_reason:
         text += f"Collapse without dilatancy is not given: {r.non_associated_reason}. "

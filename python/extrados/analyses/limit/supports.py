@@ -91,11 +91,10 @@ def run(context: Context, options: MovingSupports) -> Result:
     }
     way = "spreads" if options.spread > 0 and options.settle == 0 else "moves"
     result.answer = (
-        f"The right support {way}: the arch follows on three hinges "
-        f"({'; '.join(_place(arch, hinge) for hinge in states[0].hinges)}) and collapses at {movement[-1]:.3g} "
-        f"m({100 * movement[-1] / span:.2f} % of the span), after {len(stages) - 1} "
-        f"change{'s' if len(stages) != 2 else ''} of hinges. Up to then the thrust changes from {three_figures(force[0, 0] / 1e3)} "
-        f"to {three_figures(force[-1, 0] / 1e3)} kN."
+        f"The right support {way}: the arch follows on three hinges ({'; '.join(_place(arch, hinge) for hinge in states[0].hinges)}) "
+        f"and collapses at {movement[-1]:.3g} m ({100 * movement[-1] / span:.2f} % of the span), after {len(stages) - 1} "
+        f"change{'s' if len(stages) != 2 else ''} of hinges. Up to then the thrust changes from {three_figures(force[0, 0] / 1e3)} to "
+        f"{three_figures(force[-1, 0] / 1e3)} kN."
     )
     return result
 
@@ -145,10 +144,8 @@ def _right_support(assembly: Assembly, options: MovingSupports) -> np.ndarray:
     apart = ends[0, order[:-1]] - ends[1, order[1:]] > APART * assembly.size
     if not apart.any():
         raise Refused(
-            (
-                "the structure has only one support, so its movement moves the whole structure. Give "
-                "[[initial.movements]] for the joints on the ground that move"
-            ),
+            "the structure has only one support, so its movement moves the whole structure. Give "
+            "[[initial.movements]] for the joints on the ground that move",
             ("analysis",),
         )
     right = grounded[order[: int(apart.argmax()) + 1]]
@@ -157,9 +154,6 @@ def _right_support(assembly: Assembly, options: MovingSupports) -> np.ndarray:
     movement = np.zeros((len(assembly.a), 3))
     movement[right, :2] = along / np.hypot(*along) * (options.movement or SMALL * width)
     return movement
-
-
-OPENING = "opening of each joint at its first end (intrados of an arch) and second end (extrados), and slip"
 
 
 def _any_structure(context: Context, movement: np.ndarray) -> Result:
@@ -208,7 +202,12 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
         **tie_arrays(building, loads, {"settled": found.state}),
         **state_arrays(assembly, "settled", found.state, "under moving supports"),
         "settled_pose": Array(found.pose, ("block", "component"), "m, m, rad", "places of the centroids, rotations"),
-        "settled_opening": Array(motion, ("joint", "component"), "m", OPENING),
+        "settled_opening": Array(
+            motion,
+            ("joint", "component"),
+            "m",
+            "opening of each joint at its first end (intrados of an arch) and second end (extrados), and slip",
+        ),
         "support_movement": Array(movement, ("joint", "component"), "m, m, rad", "movements of the supports"),
     }
     result.tables = {
@@ -230,8 +229,8 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     slid = [o.name for o in opened if abs(o.slip_mm) > 1e-3 * max(o.opening_mm, 1e-300)]
     if slid:
         result.warnings.append(
-            "dilatant friction: a joint that slides also opens, by its friction times the slip. States without dilatancy, which may carry "
-            'less, are not calculated. For joints that only open, give `friction = "no-sliding"`'
+            "dilatant friction: a joint that slides also opens, by its friction times the slip. States without dilatancy, which may "
+            'carry less, are not calculated. For joints that only open, give `friction = "no-sliding"`'
         )
     result.answer = _opened_in_words(building.require_structure().word, movement, opened, len(slid), found.work) + spoken_ties(
         result.of(out.MovingSupports).ties

@@ -349,9 +349,8 @@ def _words(options: Sweep, r: out.Sweep, located: bool) -> str:
     else:
         where = f"greatest at an optimum of {best}" if r.optimum_inside else f"greatest at the end of the range, {best}"
     text = (
-        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{unit}: the collapse acceleration is {where}, "
-        f"{most:.4f} g ({r.optimum_tilt_angle_deg:.2f} degrees). {len(r.mechanisms)} "
-        f"mechanism{'s' if len(r.mechanisms) != 1 else ''}"
+        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{unit}: the collapse acceleration is {where}, {most:.4f} g "
+        f"({r.optimum_tilt_angle_deg:.2f} degrees). {len(r.mechanisms)} mechanism{'s' if len(r.mechanisms) != 1 else ''}"
     )
     moves = [f"{c.before} to {c.after} at {c.value:.4g}" for c in r.changes if c.before and c.after]
     locked = ", ".join(f"{v:.4g}" for v in r.locked_limits)

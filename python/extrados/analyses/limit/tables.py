@@ -16,16 +16,14 @@ class AppliedLoad(Table):
     """A load on the structure: at a place, or spread from x to x_end; upright, oblique or horizontal; it may sway."""
 
     x: Length = key(
-        about=(
-            "x of the load. The load acts on the highest block there, or on the block at `y`. On the fill of "
-            "a bridge, a load without `y` is spread"
-        )
+        about="x of the load. The load acts on the highest block there, or on the block at `y`. On the fill of "
+        "a bridge, a load without `y` is spread"
     )
     force: Force = key(0.0, "vertical force, downward; for a distributed load, its total")
     horizontal: Force = key(0.0, "horizontal force, towards +x; for a distributed load, its total")
     x_end: Length | None = key(None, "x of the end of a distributed load, which starts at `x` and is uniform per length of plan")
     y: Length | None = key(
-        None, ("height at which the load acts; default: the surface of the highest block. In space: the second coordinate in plan")
+        None, "height at which the load acts; default: the surface of the highest block. In space: the second coordinate in plan"
     )
     z: Length | None = key(None, "in space: height at which the load acts; default: the surface of the highest block")
     sways: bool = key(False, "whether the weight of the load is accelerated with the ground, like that of a floor or a roof")
@@ -48,11 +46,9 @@ class LimitAnalysisTable(BuildingAnalysis):
     considers: ClassVar[tuple[str, ...]] = ("[[ties]]",)
     friction_rule: Literal["associated", "non-associated"] = key(
         "associated",
-        (
-            'rule for sliding joints. "associated": sliding dilates, and the result is an upper bound; '
-            '"non-associated": sliding does not dilate, and the lowest of many possible collapse states is '
-            "searched"
-        ),
+        'rule for sliding joints. "associated": sliding dilates, and the result is an upper bound; '
+        '"non-associated": sliding does not dilate, and the lowest of many possible collapse states is '
+        "searched",
         source="Ferris and Tin-Loi 2001; Gilbert, Casapulla and Ahmed 2006",
     )
     starts: int = key(
@@ -62,7 +58,7 @@ class LimitAnalysisTable(BuildingAnalysis):
         le=1000,
     )
     load: list[AppliedLoad] = key(
-        [], ("constant loads in addition to self-weight and fill; with `sways`, the ground also accelerates their weight"), max_length=1000
+        [], "constant loads in addition to self-weight and fill; with `sways`, the ground also accelerates their weight", max_length=1000
     )
 
 
@@ -71,15 +67,12 @@ class SpatialLimit(LimitAnalysisTable):
 
     solid: ClassVar = True
     fracture: bool = key(
-        False, ("also calculate with a crack in the leeward buttress; figures show the uncracked and the cracked structure side by side")
+        False, "also calculate with a crack in the leeward buttress; figures show the uncracked and the cracked structure side by side"
     )
     direction: Angle | None = key(
         None,
-        (
-            "direction of the horizontal load in plan: angle from +x towards +y (+y is across a plane "
-            "section). If this key is given, or if the structure has no plane section, the blocks are "
-            "analysed as solids"
-        ),
+        "direction of the horizontal load in plan: angle from +x towards +y (+y is across a plane section). If this key is given, or if "
+        "the structure has no plane section, the blocks are analysed as solids",
         ge=-360,
         le=360,
     )
@@ -90,32 +83,25 @@ class Tilt(SpatialLimit, Animated):
 
     kind: Literal["tilt"]
     fracture: bool = key(
-        False, ("also calculate with a crack in the leeward buttress; figures show the uncracked and the cracked structure side by side")
+        False, "also calculate with a crack in the leeward buttress; figures show the uncracked and the cracked structure side by side"
     )
     rose: int | None = key(
         None,
-        (
-            "for solids: number of directions, at equal angles all around, in which the capacity is "
-            "searched; default 16 for up to 300 blocks; above that, only the given direction"
-        ),
+        "for solids: number of directions, at equal angles all around, in which the capacity is "
+        "searched; default 16 for up to 300 blocks; above that, only the given direction",
         ge=4,
         le=720,
     )
     mortar: Literal["neglected", "ductile"] = key(
         "neglected",
-        (
-            'cohesion and tension of the joints. "neglected": dry joints; "ductile", for solids: the joints '
-            "keep both until collapse. Real mortar is brittle, so this result is an upper bound, and the "
-            "result for dry joints is given too"
-        ),
+        'cohesion and tension of the joints. "neglected": dry joints; "ductile", for solids: the joints '
+        "keep both until collapse. Real mortar is brittle, so this result is an upper bound, and the "
+        "result for dry joints is given too",
     )
     face_law: bool | None = key(
         None,
-        (
-            "for solids: also calculate the capacity with uniform pressure on contact faces, which reduces "
-            "the resistance to torsion; default: true if contacts slide and the structure has at most 80 "
-            "contacts"
-        ),
+        "for solids: also calculate the capacity with uniform pressure on contact faces, which reduces the resistance to torsion; "
+        "default: true if contacts slide and the structure has at most 80 contacts",
         source="after Orduna and Lourenco 2005",
     )
     block_size: bool | None = key(
@@ -123,10 +109,8 @@ class Tilt(SpatialLimit, Animated):
     )
     pyramids: int | None = key(
         None,
-        (
-            "for solids: also calculate bounds with friction pyramids instead of friction cones, inscribed "
-            "and circumscribed, with this number of sides"
-        ),
+        "for solids: also calculate bounds with friction pyramids instead of friction cones, inscribed "
+        "and circumscribed, with this number of sides",
         ge=3,
         le=64,
     )
@@ -149,9 +133,8 @@ class Section(Table):
     )
     toward: Angle | None = key(
         None,
-        "direction of the thrust in plan: angle from +x towards +y. The thrust acts on the blocks at greater x or y, "
-        "or on the blocks or the ground below. Default: perpendicular to a vertical cut, otherwise outward from the "
-        "middle of the structure",
+        "direction of the thrust in plan: angle from +x towards +y. The thrust acts on the blocks at greater x or y, or on the blocks "
+        "or the ground below. Default: perpendicular to a vertical cut, otherwise outward from the middle of the structure",
         ge=-360,
         le=360,
     )
@@ -171,15 +154,12 @@ class Thrust(SpatialLimit):
         0.0, "horizontal acceleration (towards +x, or along `direction`) for which the thrust lines are drawn", ge=-5, le=5
     )
     chain: str | None = key(
-        None,
-        ("name of the arch or column of blocks whose minimum and maximum thrust are calculated; default: the first arch, vault or nave"),
+        None, "name of the arch or column of blocks whose minimum and maximum thrust are calculated; default: the first arch, vault or nave"
     )
     section: list[Section] = key(
         [],
-        (
-            "for solids: sections whose minimum and maximum thrust are calculated, [[analysis.section]]; "
-            "default: cuts across x and y through the middle, and the ground"
-        ),
+        "for solids: sections whose minimum and maximum thrust are calculated, [[analysis.section]]; "
+        "default: cuts across x and y through the middle, and the ground",
         max_length=50,
     )
 
@@ -195,10 +175,8 @@ class ThrustNetwork(BuildingAnalysis):
     starter: ClassVar = {"lines": "5", "meridians": "8"}
     form: Literal["radial", "grid", "crossed"] | None = key(
         None,
-        (
-            "form diagram in plan. radial: meridians and hoops; grid: lines along x and y; crossed: a grid "
-            "with both diagonals. Default: radial for a dome, crossed for a cross vault, otherwise grid"
-        ),
+        "form diagram in plan. radial: meridians and hoops; grid: lines along x and y; crossed: a grid "
+        "with both diagonals. Default: radial for a dome, crossed for a cross vault, otherwise grid",
         source="O'Dwyer 1999; Block and Ochsendorf 2007",
     )
     lines: int = key(10, "number of branches along the longer side of the plan, or along a meridian", ge=2, le=60)
@@ -212,12 +190,10 @@ class Sweep(SpatialLimit):
     kind: Literal["sweep"]
     starter: ClassVar = {"vary": '"thickness"', "start": "0.4", "stop": "1.2"}
     vary: str = key(
-        about=(
-            "key to vary. A key of [structure] is written without its table: buttress_width, "
-            "right.buttress_width or spans.0.rise. Any other key is written with its table: "
-            "joints.friction, material.compressive_strength or ties.0.yield_force. For solids also "
-            "`direction`, the direction of the load"
-        )
+        about="key to vary. A key of [structure] is written without its table: `buttress_width`, "
+        "`right.buttress_width` or `spans.0.rise`. Any other key is written with its table: "
+        "`joints.friction`, `material.compressive_strength` or `ties.0.yield_force`. For solids also "
+        "`direction`, the direction of the load"
     )
     start: float | str | None = key(None, 'first value of the key in `vary`, in its unit, or as text such as "40 cm"')
     stop: float | str | None = key(None, "last value")
@@ -227,10 +203,8 @@ class Sweep(SpatialLimit):
     buttress_alone: bool = key(False, "also calculate the leeward buttress alone, as a separate structure", source="thesis Fig. 3-4b")
     locate: bool | None = key(
         None,
-        (
-            "also locate precisely the values at which the mechanism changes, the optimum, and the ends of "
-            "the range in which the structure stands; default: true in a plane section"
-        ),
+        "also locate precisely the values at which the mechanism changes, the optimum, and the ends of "
+        "the range in which the structure stands; default: true in a plane section",
     )
 
     @model_validator(mode="after")
@@ -246,10 +220,8 @@ class Survey(SpatialLimit):
     kind: Literal["survey"]
     starter: ClassVar = {"file": '"extrados:example-sections"'}
     file: str = key(
-        about=(
-            "CSV file in the folder of the deck. Its header contains keys of [structure] (lengths in m); "
-            "each row gives one section, or one file of solids"
-        )
+        about="CSV file in the folder of the deck. Its header contains keys of [structure] (lengths in m); "
+        "each row gives one section, or one file of solids"
     )
     fracture: bool = key(False, "also calculate with a crack in the leeward buttress")
 
@@ -260,7 +232,7 @@ class Imperfections(SpatialLimit):
     kind: Literal["imperfections"]
     starter: ClassVar = {"deviation": '"5 mm"'}
     deviation: Length | None = key(
-        None, ("greatest distance of a measured point from its true position; default: `contact_tolerance` of the `blocks`"), gt=0, le=1
+        None, "greatest distance of a measured point from its true position; default: `contact_tolerance` of the `blocks`", gt=0, le=1
     )
     count: int = key(200, "number of random geometries", ge=10, le=100000)
     seed: int = key(1, "seed of the random numbers", ge=0)
@@ -276,17 +248,15 @@ class MovingSupports(BuildingAnalysis, Animated):
     beside: ClassVar = ("material.density", "joints.friction", "initial.movements")
     considers: ClassVar[tuple[str, ...]] = ("[[ties]]",)
     spread: float = key(
-        1.0, ("outward component of the movement of the right support; only the ratio of `spread` to `settle` matters"), ge=-10, le=10
+        1.0, "outward component of the movement of the right support; only the ratio of `spread` to `settle` matters", ge=-10, le=10
     )
     settle: float = key(
-        0.0, ("downward component of the movement of the right support; only the ratio of `spread` to `settle` matters"), ge=-10, le=10
+        0.0, "downward component of the movement of the right support; only the ratio of `spread` to `settle` matters", ge=-10, le=10
     )
     movement: Length | None = key(
         None,
-        (
-            "size of the movement of the right support, for structures whose movement is not continued to "
-            "collapse; default: 1/1000 of the width"
-        ),
+        "size of the movement of the right support, for structures whose movement is not continued to "
+        "collapse; default: 1/1000 of the width",
         gt=0,
     )
     steps: int = key(200, "for an arch: number of steps from the start of the movement to collapse", ge=10, le=5000)
@@ -333,11 +303,11 @@ class UniformLoad(Table):
 
     start: Length | None = key(
         None,
-        ("start of the uniform load: distance behind the first axle (without axles: behind the position of the train); default: unlimited"),
+        "start of the uniform load: distance behind the first axle (without axles: behind the position of the train); default: unlimited",
     )
     stop: Length | None = key(
         None,
-        ("end of the uniform load: distance behind the first axle (without axles: behind the position of the train); default: unlimited"),
+        "end of the uniform load: distance behind the first axle (without axles: behind the position of the train); default: unlimited",
     )
     load: LineForce = key(about="load per length of bridge", gt=0)
 
@@ -358,11 +328,11 @@ class Serviceability(Table):
     """A permissible limit state beside the collapse load: repeated traffic does not damage the structure progressively."""
 
     strength_share: float = key(
-        0.5, ("permissible compressive stress, divided by the compressive strength; the default is a choice of this program"), gt=0, le=1
+        0.5, "permissible compressive stress, divided by the compressive strength; the default is a choice of this program", gt=0, le=1
     )
     passive_share: float = key(
         0.0,
-        ("share of the passive pressure (`passive` of the fill) that acts under service loads, because their movements are small"),
+        "share of the passive pressure (`passive` of the fill) that acts under service loads, because their movements are small",
         ge=0,
         le=1,
     )
@@ -374,7 +344,7 @@ class MovingLoad(LimitAnalysisTable):
 
     kind: Literal["moving-load"]
     chain: str | None = key(
-        None, ("arch that the load crosses; default: the first arch, vault or nave. On a bridge, the load crosses the whole top")
+        None, "arch that the load crosses; default: the first arch, vault or nave. On a bridge, the load crosses the whole top"
     )
     train: TrainName | None = key(
         None,
@@ -387,13 +357,11 @@ class MovingLoad(LimitAnalysisTable):
     shares: list[float] | None = key(None, "share of the load on each axle; default: equal shares", max_length=200)
     force: Force | None = key(None, "total load of the axles; adds the safety factor", gt=0)
     axle_loads: list[Force] | None = key(None, "load of each axle; replaces `shares` and `force`", max_length=200)
-    uniform: list[UniformLoad] = key([], "uniform loads along the train; these require axle_loads, or axles = []", max_length=50)
+    uniform: list[UniformLoad] = key([], "uniform loads along the train; these require `axle_loads`, or axles = []", max_length=50)
     adverse: bool = key(
         True,
-        (
-            "true: distributed loads act only over the lengths on which they drive the mechanism (adverse "
-            "lengths); false: they act over their whole length"
-        ),
+        "true: distributed loads act only over the lengths on which they drive the mechanism (adverse "
+        "lengths); false: they act over their whole length",
     )
     alpha: float = key(1.0, "adjustment or classification factor of the train", gt=0, le=10)
     lanes: int | None = key(None, "number of notional lanes that LM1 loads; default: all that fit into the width", ge=1, le=20)
@@ -402,14 +370,12 @@ class MovingLoad(LimitAnalysisTable):
     factors: PartialFactors = key(PartialFactors(), "partial factors")
     serviceability: Serviceability | None = key(
         None,
-        (
-            "permissible limit state: greatest multiple of the train for which a thrust line exists with "
-            "stresses below a share of the compressive strength; requires `compressive_strength`"
-        ),
+        "permissible limit state: greatest multiple of the train for which a thrust line exists with "
+        "stresses below a share of the compressive strength; requires `compressive_strength`",
     )
     both_ways: bool = key(False, "whether the train also crosses in the opposite direction (towards -x, first axle in front)")
     count: int = key(
-        81, ("number of positions while a load crosses the span; more, in proportion, for a train longer than the span"), ge=3, le=2000
+        81, "number of positions while a load crosses the span; more, in proportion, for a train longer than the span", ge=3, le=2000
     )
     places: list[Length] | None = key(None, "positions of the first axle; `count` is then not used", min_length=1, max_length=2000)
 
@@ -417,9 +383,9 @@ class MovingLoad(LimitAnalysisTable):
     def _axles(self) -> "MovingLoad":
         given = self.model_fields_set
         if self.shares is not None and (len(self.shares) != len(self.axles) or min(self.shares) <= 0.0):
-            raise ValueError("`shares`: expected one number above 0 for each of the axles")
+            raise ValueError("shares: expected one number above 0 for each of the axles")
         if self.axle_loads is not None and (len(self.axle_loads) != len(self.axles) or min(self.axle_loads) <= 0.0):
-            raise ValueError("`axle_loads`: expected one load above 0 for each of the axles")
+            raise ValueError("axle_loads: expected one load above 0 for each of the axles")
         if self.train is not None and given & {"axles", "shares", "force", "axle_loads", "uniform"}:
             raise ValueError(
                 "the key `train` replaces `axles`, `shares`, `force`, `axle_loads` and `uniform`: remove either `train` or these keys"

@@ -50,7 +50,7 @@ def run(context: Context, options: Thrust) -> Result:
         states, part = _with_central(limit, options.gamma, ends, result)
     except NoEquilibrium:
         raise Refused(
-            (f"no thrust line is admissible at {options.gamma:g} g: the structure can carry accelerations from {low:.4f} to {high:.4f} g"),
+            f"no thrust line is admissible at {options.gamma:g} g: the structure can carry accelerations from {low:.4f} to {high:.4f} g",
             ("analysis", "gamma"),
         ) from None
     safety = None if part is None else safety_factor(part)

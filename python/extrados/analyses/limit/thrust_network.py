@@ -166,8 +166,7 @@ def _load_words(r: out.ThrustNetwork) -> str:
             f"for this form diagram is {bound:.4g} times the weight."
         )
     return (
-        f"{along}networks carry a horizontal load of {_between(load, bound, 1.0)} times the weight, if "
-        "the load acts at the nodes. The real load acts at the centroids of the blocks, so the collapse "
-        "load can be less. For the barrel vaults that were compared, this value exceeds that of `tilt` "
-        f"by {ABOVE} %."
+        f"{along}networks carry a horizontal load of {_between(load, bound, 1.0)} times the weight, if the load acts at the nodes. The "
+        "real load acts at the centroids of the blocks, so the collapse load can be less. For the barrel vaults that were compared, "
+        f"this value exceeds that of `tilt` by {ABOVE} %."
     )

@@ -29,6 +29,7 @@ from extrados.limit.certificate import Certificate, certify
 from extrados.limit.finite_motion import finite_motion
 from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_joint, thrust_of
+from extrados.limit.load_path import RATIOS
 from extrados.limit.plane_path import collapse_along_path
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
 from extrados.model.dimensions import with_article
@@ -70,7 +71,7 @@ def run(context: Context, options: Tilt) -> Result:
     measures: Keys = assembly.measures
     fracture = _fracture(building, options, answer, result) if options.fracture else {}
     dilating = {1: limit.dilating(mechanism), -1: limit.dilating(answer.back_mechanism)}
-    sliding = _without_dilatancy(limit, answer, dilating, result)
+    sliding = _without_dilatancy(context, limit, answer, dilating, result)
     found = out.Tilt(
         collapse_acceleration_g=state.gamma,
         collapse_acceleration_opposite_g=-answer.back_state.gamma,
@@ -186,7 +187,7 @@ def _admissible(answer: Answer, sliding: dict[str, object]) -> list[float]:
     return [low, high]
 
 
-def _without_dilatancy(limit: LimitAnalysis, answer: Answer, dilating: dict[int, list[int]], result: Result) -> Keys:
+def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, dilating: dict[int, list[int]], result: Result) -> Keys:
     """Least states without dilatancy and their certificates: of both senses where the deck asks for that rule, and beside
     the upper bound of associated friction of each sense in whose mechanism pressed joints slide."""
     told: Keys = {}
@@ -217,7 +218,7 @@ def _without_dilatancy(limit: LimitAnalysis, answer: Answer, dilating: dict[int,
                 'paths, give friction_rule = "non-associated".'
             )
         elif beside.coulomb[direction].falling is None:
-            paths, ends = _paths(beside, direction, patient=not limit.associated)
+            paths, ends = _paths(context, beside, direction, patient=not limit.associated)
             lowest = min(ends, key=lambda one: direction * one[0].gamma, default=pair)
             if direction * (pair[0].gamma - lowest[0].gamma) > out.SAME:
                 pair = lowest  # below the states that the programmes found
@@ -267,11 +268,15 @@ def _without_dilatancy(limit: LimitAnalysis, answer: Answer, dilating: dict[int,
     return told
 
 
-def _paths(limit: LimitAnalysis, direction: int, *, patient: bool) -> tuple[list[out.LoadPath], list[tuple[State, Mechanism]]]:
+def _paths(
+    context: Context, limit: LimitAnalysis, direction: int, *, patient: bool
+) -> tuple[list[out.LoadPath], list[tuple[State, Mechanism]]]:
     """The load paths to +x (1) or to -x (-1), and the certified collapses at their ends."""
     ends = []
+    before = 0 if direction > 0 else len(RATIOS)
 
     def follow(ratio: float, effort: int) -> tuple[float, Certificate]:
+        context.progress(before + RATIOS.index(ratio), 2 * len(RATIOS), "load paths")
         state, mechanism = collapse_along_path(limit, direction, ratio, effort)
         assert limit.friction is not None  # joints that cannot slide need no such state
         proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, None)
@@ -365,9 +370,8 @@ def _told(found: out.Tilt) -> str:
                 f"Without dilatancy, the design value {way} is {design:.4f} g, the lowest of {len(paths)} load paths with elastic joints. "
             )
         text += (
-            f"The lowest of {len(r.starts_g)} collapse accelerations found {way} is {least:.4f} g (scatter {r.spread_g:.4f} "
-            f"g). The lower bound without friction is {lower}, and the upper bound with dilatancy is {upper}. "
-            ""
+            f"The lowest of {len(r.starts_g)} collapse accelerations found {way} is {least:.4f} g (scatter {r.spread_g:.4f} g). The "
+            f"lower bound without friction is {lower}, and the upper bound with dilatancy is {upper}. "
         )
     if found.non_associated_reason:
         text += f"Collapse without dilatancy is not given: {found.non_associated_reason}. "

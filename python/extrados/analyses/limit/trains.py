@@ -117,5 +117,5 @@ def fitting_train(building: Building, options: MovingLoad) -> Train:
     """The train of a deck on its structure; Refused where it is wider."""
     depth, structure = building.blocks().depth, building.structure
     if options.width is not None and options.width > depth and structure is not None:
-        raise Refused(f"`width`: {options.width:g} m exceeds the depth of the {structure.word}, {depth:g} m", ("analysis", "width"))
+        raise Refused(f"width: {options.width:g} m exceeds the depth of the {structure.word}, {depth:g} m", ("analysis", "width"))
     return train_of(options, depth)

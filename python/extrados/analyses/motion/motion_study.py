@@ -353,9 +353,8 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
         r |= _compare_with_target(result, r, model, periods, psa, target)
     else:
         result.answer = (
-            f"{count} records: median peak acceleration {r['median_pga_g']:.3g} g (largest {r['largest_pga_g']:.3g} g), "
-            f"median peak velocity {100 * r['median_pgv_m_s']:.3g} cm/s, median Arias intensity {r['median_arias_m_s']:.3g} "
-            "m/s."
+            f"{count} records: median peak acceleration {r['median_pga_g']:.3g} g (largest {r['largest_pga_g']:.3g} g), median peak "
+            f"velocity {100 * r['median_pgv_m_s']:.3g} cm/s, median Arias intensity {r['median_arias_m_s']:.3g} m/s."
         )
         if isinstance(model, models.Suite) and model.selection is not None:
             r |= _beside_selection(result, model.selection, folder, periods, psa)

@@ -239,7 +239,6 @@ def _answer(r: out.Assessment, worst: out.AssessedImpulse | None, what: str) -> 
     also = "also " if r.static_verdict == r.verdict else ""
     static = "collapse" if r.static_verdict == "fails" else "no collapse"
     return (
-        f"{text}Limit analysis with the peak acceleration of {r.peak_ground_acceleration_g:.3f} g as a "
-        f"constant horizontal acceleration (collapse acceleration {r.uplift_acceleration_g:.3f} g) {also}predicts "
-        f"{static}."
+        f"{text}Limit analysis with the peak acceleration of {r.peak_ground_acceleration_g:.3f} g as a constant horizontal acceleration "
+        f"(collapse acceleration {r.uplift_acceleration_g:.3f} g) {also}predicts {static}."
     )

@@ -67,10 +67,8 @@ def shifts_of(building: Building) -> list[Shift]:
         moved = {m.joint for m in movements if Shift(m.dx, m.dy, m.start, m.duration) == shift}
         if moved != grounded:
             raise Refused(
-                (
-                    f"the supports at {', '.join(sorted(grounded - moved)[:4])} do not move with the other supports. "
-                    "Only `dem` can follow supports that move apart during rocking"
-                ),
+                f"the supports at {', '.join(sorted(grounded - moved)[:4])} do not move with the other supports. "
+                "Only `dem` can follow supports that move apart during rocking",
                 ("initial", "movements"),
             )
     return sorted(shifts, key=lambda s: (s.start, s.duration, s.dx, s.dy))

@@ -54,8 +54,8 @@ def refuse_long_history(end_time: float, output_step: float, width: int) -> None
     if end_time / output_step * width > LARGEST:
         least = end_time * width / LARGEST
         raise Refused(
-            f"a history of {end_time:g} s in steps of {output_step:g} s is too long to store: give an output_step of at least "
-            f"{least:.2g} s",
+            f"a history of {end_time:g} s in steps of {output_step:g} s is too long to store: give an "
+            f"`output_step` of at least {least:.2g} s",
             ("analysis", "output_step"),
         )
 

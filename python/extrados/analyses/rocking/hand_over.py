@@ -35,7 +35,7 @@ from extrados.core.stack import StackResponse, stack_history
 from extrados.limit.linkage import Linkage
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly
-from extrados.results.dem import DemRun
+from extrados.results.dem import APART, DemRun
 from extrados.results.model import Array, Result
 from extrados.results.rocking import COLLAPSE, NO_HINGING, RECOVERY, SLID, WholeOutcome
 from extrados.schema.constants import GRAVITY
@@ -471,8 +471,10 @@ def outcome_of(rocked: bool, outcome: str) -> WholeOutcome:
 
 
 def stored(result: Result) -> dict[str, Array]:
-    """Histories of the blocks on contacts, by names of their own."""
-    get = result.arrays
+    """Histories of the blocks on contacts, by names of their own; no slip of joints that are open over their whole length."""
+    get = dict(result.arrays)
+    slip = get["slip"]
+    get["slip"] = replace(slip, data=np.where(np.asarray(get["hinge"].data) == APART, np.nan, slip.data))
     axes = {"time": "contacts_time"}
     kept = ("time", "place", "rotation", "slip", "ground", "kinetic_energy", "friction_energy", "damping_energy")
     return {

@@ -75,8 +75,7 @@ def _handed(
     result.arrays |= stored(further)
     result.arrays |= on_contacts(context.building.blocks(), result)
     result.answer = (
-        f"By {contacts.name}: {further.answer} {('Rocking' if left.rocks else 'The rest')} without sliding "
-        f"lasts until {time:.3f} s. From then on, the motion of the blocks is calculated with {contacts.name}. "
-        f"{over.reason}"
+        f"By {contacts.name}: {further.answer} {('Rocking' if left.rocks else 'The rest')} without sliding lasts until {time:.3f} s. "
+        f"From then on, the motion of the blocks is calculated with {contacts.name}. {over.reason}"
     )
     return result

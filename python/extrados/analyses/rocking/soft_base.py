@@ -143,7 +143,7 @@ def _result(
             pressed,
             ("time", "end"),
             "m",
-            ("both ends of the part of the base that is in contact, measured from the point below the centre of the block"),
+            "both ends of the part of the base that is in contact, measured from the point below the centre of the block",
         ),
     }
     return result

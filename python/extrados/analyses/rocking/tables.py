@@ -20,10 +20,8 @@ def hand_over_cells() -> Any:
     """Key of analyses that draw a map."""
     return key(
         100,
-        (
-            "if joints slide or hinges form at other joints in at most this number of cells of the map, "
-            "these cells are continued with rigid contacts; if there are more, none is continued. 0: never"
-        ),
+        "if joints slide or hinges form at other joints in at most this number of cells of the map, "
+        "these cells are continued with rigid contacts; if there are more, none is continued. 0: never",
         ge=0,
         le=1_000_000,
         source="Moreau 1988",
@@ -49,7 +47,7 @@ class RockingTable(BuildingAnalysis):
     soft_base: ClassVar = False
     form: Literal["nonlinear", "linear"] = key(
         "nonlinear",
-        ("form of the equations of motion. nonlinear: full equations; linear: equations for slender blocks and small rotations"),
+        "form of the equations of motion. nonlinear: full equations; linear: equations for slender blocks and small rotations",
         source="Housner 1963",
     )
 
@@ -87,10 +85,8 @@ class Rocking(RockingTable, Animated):
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
     hand_over: bool = key(
         True,
-        (
-            "if joints slide or hinges form outside the rocking mechanism, continue the run with rigid "
-            "contacts from that state; false leaves the outcome open"
-        ),
+        "if joints slide or hinges form outside the rocking mechanism, continue the run with rigid "
+        "contacts from that state; false leaves the outcome open",
         source="Moreau 1988",
     )
     thrust_line_times: list[Annotated[Time, Field(ge=0)]] = key(
@@ -110,7 +106,7 @@ class FailureDomain(RockingTable):
     soft_base: ClassVar = True
     pulse: Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"] = key(
         "step",
-        ("shape of the pulse: step pulse of duration t_p, single sine of period T_p, or another shape of `pulse`"),
+        "shape of the pulse: step pulse of duration t_p, single sine of period T_p, or another shape of `pulse`",
         source="thesis 5.2.3",
     )
     durations: list[Annotated[Time, Field(gt=0)]] | None = key(
@@ -147,10 +143,7 @@ class FailureCurves(RockingTable):
     )
     count: int = key(40, "number of durations of each failure curve, if `durations` is not given", ge=2, le=2000)
     amplitudes: int = key(
-        60,
-        ("number of amplitudes up to `max_amplitude` that are tried; the lowest one that causes collapse is then refined"),
-        ge=2,
-        le=2000,
+        60, "number of amplitudes up to `max_amplitude` that are tried; the lowest one that causes collapse is then refined", ge=2, le=2000
     )
     max_amplitude: Acceleration = key(1.5 * GRAVITY, "cap of the search", gt=0)
     accuracy: float = key(1e-4, "accuracy of the failure curves, in g", ge=1e-9, le=0.1)
@@ -158,7 +151,7 @@ class FailureCurves(RockingTable):
     max_period: Time = key(4.0, "longest primary impulse sought", gt=0)
     fits: bool = key(
         False,
-        ("for arches: also fit Eq. 5.5 of the thesis to each curve, and apply the criterion of Eq. 5.8 with Table 5.3"),
+        "for arches: also fit Eq. 5.5 of the thesis to each curve, and apply the criterion of Eq. 5.8 with Table 5.3",
         source="thesis Fig. 5-14",
     )
 

@@ -76,11 +76,9 @@ def _piers(
             height, width, load = float(np.mean(beside)) if beside else tall, pier.end - pier.start, -pier.normal
             if not 0.0 < load < 0.7 * strength * width * thickness:
                 raise Refused(
-                    (
-                        f"`frame`: a pier of wall '{wall.name}', storey {storey}, carries {load / 1000.0:.4g} kN under the "
-                        f"constant loads. The formulas for piers require a pressure below 0.7 f_m, which corresponds to {0.0007 * strength * width * thickness:.4g} "
-                        "kN"
-                    ),
+                    f"frame: a pier of wall '{wall.name}', storey {storey}, carries {load / 1000.0:.4g} kN under the "
+                    f"constant loads. The formulas for piers require a pressure below 0.7 f_m, which corresponds to {0.0007 * strength * width * thickness:.4g} "
+                    "kN",
                     ("analysis", "frame"),
                 )
             double = rules.fixity == "double"

@@ -179,8 +179,8 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     groups += spring_groups(mesh.springs)
     if options.without_equilibrium not in ("load-unload", "continue") and any(np.isfinite(j.strength["friction"]) for j in mesh.joints):
         raise Refused(
-            'only "continue" and "load-unload" can follow joints that slide. Give the joints friction = "no-sliding", or '
-            "remove without_equilibrium",
+            'only "continue" and "load-unload" can follow joints that slide. Give the joints friction = '
+            '"no-sliding", or remove `without_equilibrium`',
             ("analysis", "without_equilibrium"),
         )
     if options.without_equilibrium != "continue" and any(joint.floor for joint in mesh.joints):
@@ -202,9 +202,9 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     weight, acceleration = float(GRAVITY * mass.sum()), None
     if not weight > 0.0:
         raise BadGeometry("the building has no weight: give the material a density")
-    behaviour = core.Behaviour(
-        options.cracking, options.shear_retention, options.closes, MOST_CHANGES_OF_JOINTS if mesh.joints else core.Behaviour.most_changes
-    )
+    changes = MOST_CHANGES_OF_JOINTS if mesh.joints else core.Behaviour.most_changes
+    extent = options.crack_band_rule == "extent"
+    behaviour = core.Behaviour(options.cracking, options.shear_retention, options.closes, changes, extent=extent)
     control = _control(mesh, options, along, held)
     model = ShellModel(
         mesh=mesh,

@@ -168,11 +168,9 @@ def _stop(model: ShellModel, staged: ShellModel, stage: PushStage, now: float, n
         load = (stage.base_shear - staged.already) / staged.unit
         if not load > 0.0:
             raise Refused(
-                (
-                    f"stages[{number}].base_shear: at the start of this stage, the base shear in this direction is "
-                    f"already {staged.already:.4g} N, which is not below the given {stage.base_shear:.4g} N. To reduce the "
-                    "base shear, apply the load in the opposite direction"
-                ),
+                f"stages[{number}].base_shear: at the start of this stage, the base shear in this direction is "
+                f"already {staged.already:.4g} N, which is not below the given {stage.base_shear:.4g} N. To reduce the "
+                "base shear, apply the load in the opposite direction",
                 ("analysis", "stages", number, "base_shear"),
             )
     if stage.target_displacement is not None:

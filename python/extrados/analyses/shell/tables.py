@@ -31,10 +31,8 @@ class Settlement(Table):
     wall: str | None = key(None, "name of the wall above the support that moves", min_length=1, max_length=40)
     foot: str | None = key(
         None,
-        (
-            "for a vault: name of the support that moves (left or right, springing of a dome, north-east and "
-            "so on of a groin vault, a support of a mesh file, or all)"
-        ),
+        "for a vault: name of the support that moves (left or right, springing of a dome, north-east and "
+        "so on of a groin vault, a support of a mesh file, or all)",
         min_length=1,
         max_length=200,
     )
@@ -70,10 +68,8 @@ class PushStage(Table):
     sense: Literal["+", "-"] = key("+", "of the push")
     base_shear: Force | None = key(
         None,
-        (
-            "base shear at which the stage ends, in the direction of its load, including loads that remain "
-            "from earlier stages; 0 removes an earlier load in the opposite direction"
-        ),
+        "base shear at which the stage ends, in the direction of its load, including loads that remain "
+        "from earlier stages; 0 removes an earlier load in the opposite direction",
     )
     target_displacement: Length | None = key(None, "control displacement at which the stage ends, measured from the building without loads")
     stop_fraction: float = key(0.0, "the stage ends when the load drops below this share of its peak in the stage", ge=0, lt=1)
@@ -142,43 +138,33 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     direction: Angle = key(0.0, "direction of the load in plan, counter-clockwise from x", ge=-360, le=360)
     directions: list[Literal["+", "-"]] = key(
         ["+"],
-        ("senses of the load (along and against the direction); each run begins from the same initial state"),
+        "senses of the load (along and against the direction); each run begins from the same initial state",
         min_length=1,
         max_length=2,
     )
     pattern: Literal["mass", "triangular", "modal"] = key(
         "mass",
-        (
-            "distribution of the horizontal forces. mass: in proportion to the masses; triangular: in "
-            "proportion to the masses times their height; modal: in proportion to the masses times the "
-            "first mode in this direction"
-        ),
+        "distribution of the horizontal forces. mass: in proportion to the masses; triangular: in proportion to the masses times their "
+        "height; modal: in proportion to the masses times the first mode in this direction",
     )
     drives: list[Drive] = key(
         [],
-        (
-            "imposed displacements instead of the horizontal forces: the top of each storey of a wall moves "
-            "by a given multiple of the control displacement"
-        ),
+        "imposed displacements instead of the horizontal forces: the top of each storey of a wall moves "
+        "by a given multiple of the control displacement",
         max_length=100,
     )
     control: Drive | None = key(
         None,
-        (
-            "place whose mean displacement along the load is the control displacement; default: all walls on "
-            "the highest level, or all masses if this level is propped"
-        ),
+        "place whose mean displacement along the load is the control displacement; default: all walls on "
+        "the highest level, or all masses if this level is propped",
     )
     settlements: list[Settlement] = key(
         [], "settlements that are imposed in proportion to the weight, [[analysis.settlements]]", max_length=100
     )
     stages: list[PushStage] = key(
         [],
-        (
-            "sequence of stages, [[analysis.stages]], instead of a single load: horizontal loads in either "
-            "direction, or settlements. Each stage keeps the damage of the stages before. The weight is "
-            "applied first, together with `settlements`"
-        ),
+        "sequence of stages, [[analysis.stages]], instead of a single load: horizontal loads in either direction, or settlements. Each "
+        "stage keeps the damage of the stages before. The weight is applied first, together with `settlements`",
         min_length=1,
         max_length=50,
     )
@@ -203,22 +189,18 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] = key(1e4, "the run ends when the compliance has increased by this factor")
     crack_closure: bool | None = key(
         None,
-        (
-            "whether cracks that close regain their stiffness; default: true for rotating cracks followed by "
-            "equilibrium iterations, otherwise false"
-        ),
+        "whether cracks that close regain their stiffness; default: true for rotating cracks followed by "
+        "equilibrium iterations, otherwise false",
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
-        (
-            'method after an event for which no load is admissible at all points (see sla). "continue": '
-            "equilibrium iterations in displacement control (for rotating cracks, and for joints that slide "
-            'from the first load on). "load-unload": loads A remain, and the greatest lower limit decides; '
-            "this is the default with stages"
-        ),
+        'method after an event for which no load is admissible at all points (see sla). "continue": '
+        "equilibrium iterations in displacement control (for rotating cracks, and for joints that slide "
+        'from the first load on). "load-unload": loads A remain, and the greatest lower limit decides; '
+        "this is the default with stages",
         source="thesis 4.3.1",
     )
-    continuation: Literal["newton", "implicit-explicit", "dissipation"] = key("newton", "equilibrium iterations, see sla")
+    continuation: Literal["newton", "steps", "implicit-explicit", "dissipation"] = key("newton", "equilibrium iterations, see sla")
     states: list[Annotated[int, Field(ge=1)]] = key(
         [], "numbers of the events whose state is saved, besides the peak and the last event", max_length=200
     )
@@ -229,7 +211,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     )
     variants: list[Variant] = key(
         [],
-        ("other assumptions with which the run in the first sense is repeated, for a band of capacity curves, [[analysis.variants]]"),
+        "other assumptions with which the run in the first sense is repeated, for a band of capacity curves, [[analysis.variants]]",
         max_length=50,
     )
     #: What the events of sla ask for and a push does not offer

@@ -133,9 +133,8 @@ def remarks_of_curve(model: ShellModel, curve: Curve) -> list[str]:
         return said  # a stage that ends at its target
     if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
         said.append(
-            f"the run{sense} ended before the base shear decreased ({events.reason or 'number of events'}). "
-            f"The greatest value, {engineering(curve.force(model.unit)[curve.peak], 'N')}, is therefore not "
-            "a capacity"
+            f"the run{sense} ended before the base shear decreased ({events.reason or 'number of events'}). The greatest value, "
+            f"{engineering(curve.force(model.unit)[curve.peak], 'N')}, is therefore not a capacity"
         )
     return said
 
@@ -147,9 +146,8 @@ def warn_unequal_drives(options: Pushover, numbers: dict[str, Any]) -> list[str]
     carried, load = sum(row["shear_N"] for row in numbers["walls"]), numbers["greatest_load_N"]
     return [
         (
-            "The `drives` move their storeys by different ratios. The load of the curve is therefore the "
-            "work of all drives divided by the control displacement, not the base shear. At the greatest "
-            f"load of {engineering(load, 'N')}, the walls carry {engineering(carried, 'N')} along the load "
-            "at their feet. Compare measured base shears with this value."
+            "The `drives` move their storeys by different ratios. The load of the curve is therefore the work of all drives divided by "
+            f"the control displacement, not the base shear. At the greatest load of {engineering(load, 'N')}, the walls carry "
+            f"{engineering(carried, 'N')} along the load at their feet. Compare measured base shears with this value."
         )
     ]

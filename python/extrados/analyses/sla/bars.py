@@ -74,7 +74,7 @@ def bar_group(
     what = f"a bar from {bar.start} to {bar.end}"
     if material.tensile_strength_parallel is not None:
         raise BadGeometry(
-            f"tensile_strength_parallel of {bar.material!r} is only for masonry, and a bar has only one strength: remove this key"
+            f"`tensile_strength_parallel` of {bar.material!r} is only for masonry, and a bar has only one strength: remove this key"
         )
     rod = None
     if bar.bonded:
@@ -89,7 +89,7 @@ def bar_group(
     if bar.yield_strength is not None:
         if not bar.ultimate_strain > bar.yield_strength / material.young:
             raise BadGeometry(
-                f"{what}: ultimate_strain {bar.ultimate_strain:g} is below the yield strain, {bar.yield_strength / material.young:g}"
+                f"{what}: `ultimate_strain` {bar.ultimate_strain:g} is below the yield strain, {bar.yield_strength / material.young:g}"
             )
         band = 1.0
         tension = crushing = yielding(bar.yield_strength, material.young, bar.ultimate_strain, options)

@@ -192,9 +192,8 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
         events, sense = curve.events, f" (load to {curve.sense})"
         if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
             result.warnings.append(
-                f"the run{sense} ended before the load decreased ({events.reason or 'number of events'}). The "
-                f"greatest value, {engineering(curve.force(model.unit)[curve.peak], 'N')}, is therefore not a "
-                "capacity"
+                f"the run{sense} ended before the load decreased ({events.reason or 'number of events'}). The greatest value, "
+                f"{engineering(curve.force(model.unit)[curve.peak], 'N')}, is therefore not a capacity"
             )
         if far := out_of_reach(curve):
             result.warnings.append(far)

@@ -41,6 +41,8 @@ PICTURES = 80
 #: Drift to which a run goes on that has lost equilibrium under its constant loads; longest step of equilibrium iterations, and
 #: displacement below which nothing counts as running away, over the extent across the control displacement
 DRIFT, LONGEST_STEP, RUNAWAY = 0.01, 1e-4, 2.5e-3
+#: Continuations that begin with the first load
+FROM_THE_START = ("steps", "dissipation")
 #: Part of the work of the loads by which the energies of steps may differ without a warning
 UNBALANCED = 0.06
 #: Part of the greatest load that a step of the arc length may lose without a warning
@@ -220,10 +222,8 @@ def run_curves(
         if damage is not None:
             if damage.shape[1] != core_model.points:
                 raise Refused(
-                    (
-                        f"resume_from: the earlier wall has {damage.shape[1]} integration points (with those of bars), "
-                        f"but this wall has {core_model.points}"
-                    ),
+                    f"resume_from: the earlier wall has {damage.shape[1]} integration points (with those of bars), "
+                    f"but this wall has {core_model.points}",
                     ("analysis", "resume_from"),
                 )
             core_model.set_damage(damage)
@@ -298,8 +298,7 @@ def bring_on_constant_loads(
         if not far <= FAR * model.extent:
             raise NotCarried(
                 f"the structure cannot carry the constant loads. They would move it by {far:.3g} m, more than 1/10 of its size of "
-                f"{model.extent:.3g} m: the structure is a mechanism, held only by the residual stiffness of open joints and "
-                "cracks",
+                f"{model.extent:.3g} m: the structure is a mechanism, held only by the residual stiffness of open joints and cracks",
                 WHOLE,
             )
     return found, rubs
@@ -374,15 +373,13 @@ def _constant_stage(
         most = float(events.load.max()) if len(events) else 0.0
         if events.reason == SPENT:
             raise NotCarried(
-                (
-                    f"the `budget` of {options.budget:.4g} s of processor time ended while the constant loads were "
-                    f"applied, at {100 * most:.3g} % of them. Increase `budget`, or use larger elements"
-                ),
+                f"the `budget` of {options.budget:.4g} s of processor time ended while the constant loads were "
+                f"applied, at {100 * most:.3g} % of them. Increase `budget`, or use larger elements",
                 WHOLE,
             )
         why = events.reason or f"{way.done} events were not enough"
         raise NotCarried(
-            (f"the structure cannot carry the constant loads: with damage, it carries at most {100 * most:.3g} % of them ({why})"), WHOLE
+            f"the structure cannot carry the constant loads: with damage, it carries at most {100 * most:.3g} % of them ({why})", WHOLE
         )
     return events
 
@@ -504,10 +501,8 @@ class _Run:
             if error.status != status_code("beyond_strength"):
                 raise
             raise Refused(
-                (
-                    "the constant loads alone exceed the strength, and no multiplier of the reference load relieves "
-                    "them. Reduce the constant loads, or apply them with damage: constant_damage = true"
-                ),
+                "the constant loads alone exceed the strength, and no multiplier of the reference load relieves "
+                "them. Reduce the constant loads, or apply them with damage: constant_damage = true",
                 WHOLE,
             ) from None
         if self.model.driven and not part.steps.any():  # as of a force that moves them
@@ -598,6 +593,11 @@ class _Run:
                 "confinement, shear retention or bars). The later events are therefore calculated with "
                 '"load-unload".'
             )
+        if self.options.continuation in FROM_THE_START and not self.goes_on:
+            curve.warnings.append(
+                f"`continuation` = {self.options.continuation} had no effect: equilibrium iterations can follow only rotating cracks of "
+                "isotropic masonry, and joints. The run consists of events."
+            )
         if self.options.continuation == "dissipation":
             self._warn_of_drops(curve)
         steps = events.steps & events.equilibrium
@@ -607,9 +607,8 @@ class _Run:
             gap = float((np.abs(events.external - events.stored - events.lost)[steps] / work).max())
             if gap > UNBALANCED:
                 curve.warnings.append(
-                    "In the steps with displacement control, the sum of stored and dissipated energy differs from the work of the "
-                    f"loads by {100 * gap:.0f} %. Loads and displacements are in equilibrium, but the dissipated energy is not "
-                    "reliable."
+                    "In the steps with displacement control, the sum of stored and dissipated energy differs from the work of the loads "
+                    f"by {100 * gap:.0f} %. Loads and displacements are in equilibrium, but the dissipated energy is not reliable."
                 )
 
     def _end_on_a_line(self, curve: Curve) -> None:
@@ -679,7 +678,7 @@ def run_reference_loads(
     goes_on = options.without_equilibrium == "continue" and core_model.continues and model.continues
     variant = "load-unload" if options.without_equilibrium == "continue" else options.without_equilibrium
     follow(core_model, model, options.continuation if goes_on else None)
-    if goes_on and (model.steps_alone or options.continuation == "dissipation") and not core_model.iterates:
+    if goes_on and (model.steps_alone or options.continuation in FROM_THE_START) and not core_model.iterates:
         core_model.go_on(core_model.displacement(0.0))
     ends_by_drift = goes_on and stop.displacement == np.inf and not stop.side
     if ends_by_drift:
@@ -692,7 +691,7 @@ def run_reference_loads(
 def follow(core_model: core.Model, model: EventModel, how: str | None) -> None:
     """How a stage goes on without equilibrium under its constant loads, see core.Model.follow."""
     reach = 1.0 if how is None else model.reach
-    core_model.follow(how, LONGEST_STEP * reach, RUNAWAY * reach, 1.0 if model.driven else abs(model.unit))
+    core_model.follow("newton" if how == "steps" else how, LONGEST_STEP * reach, RUNAWAY * reach, 1.0 if model.driven else abs(model.unit))
 
 
 def _incremental_stage(

@@ -277,7 +277,7 @@ def _behaviour(mesh: Mesh, options: Sla, several: bool) -> tuple[core.Behaviour,
             f"carry the load. Give at most {MOST_OF_FLOOR / floor:g}"
         )
     most = MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes
-    return core.Behaviour(options.cracking, options.shear_retention, closure, most, floor), ratio
+    return core.Behaviour(options.cracking, options.shear_retention, closure, most, floor, options.crack_band_rule == "extent"), ratio
 
 
 def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
@@ -425,7 +425,7 @@ def hills_of(materials: Sequence[Material], linear: np.ndarray, options: CrackOp
     if not any(criterion is not None for criterion in found):
         return None
     if options.cracking == "isotropic":
-        raise BadGeometry("compressive_strength_parallel requires cracks with a direction, and isotropic cracking has none")
+        raise BadGeometry("`compressive_strength_parallel` requires cracks with a direction, and isotropic cracking has none")
     return found
 
 
@@ -466,7 +466,7 @@ def values_of(
     tension = [None if s else softening_of(m, options, float(f)) for m, s, f in zip(materials, linear, factors, strict=True)]
     beds = [None if t is None else bedding_of(m) for m, t in zip(materials, tension, strict=True)]
     if options.cracking == "isotropic" and any(bed is not None for bed in beds):
-        raise BadGeometry("tensile_strength_parallel requires cracks with a direction, and isotropic cracking has none")
+        raise BadGeometry("`tensile_strength_parallel` requires cracks with a direction, and isotropic cracking has none")
     # Across its weakest direction bedded masonry has the teeth of another band, see core.Bedding
     widest = (band if reach is None else reach[:, 1]) * [1.0 if bed is None else bed.stretch()[1] for bed in beds]
     for rows, widths, energy in ((tension, widest, "fracture_energy"), (crushing, band, "crushing_energy")):

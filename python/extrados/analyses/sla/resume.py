@@ -132,7 +132,7 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         event = len(get["event_point"]) if options.resume_event is None else options.resume_event
         if event > len(get["event_point"]):
             raise Refused(
-                f"resume_event is {event}, but the earlier run has {len(get['event_point'])} events", ("analysis", "resume_event")
+                f"`resume_event` is {event}, but the earlier run has {len(get['event_point'])} events", ("analysis", "resume_event")
             )
         if event >= 1 and "event_step" in get and get["event_step"][event - 1]:
             first = int(np.argmax(get["event_step"])) + 1
@@ -166,11 +166,8 @@ def _damage_at(event: int, get: dict[str, np.ndarray], traceless: str | None) ->
         return get["damage_end"].T
     if traceless is not None:
         raise Refused(
-            (
-                f"resume_event: the damage before event {event} was not saved and cannot be reconstructed, "
-                f"because of {traceless}. Saved events: {', '.join((str(e) for e in kept))}. To save other "
-                "events, name them in `states` of the earlier run"
-            ),
+            f"resume_event: the damage before event {event} was not saved and cannot be reconstructed, because of {traceless}. Saved "
+            f"events: {', '.join(str(e) for e in kept)}. To save other events, name them in `states` of the earlier run",
             ("analysis", "resume_event"),
         )
     return damage_before(get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1])

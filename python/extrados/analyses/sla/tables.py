@@ -63,7 +63,7 @@ class Load(Table):
             if not self.parts:
                 raise ValueError("a load of kind displacement requires parts = [{edge = ..., ratio = ...}, ...]")
         elif self.kind != "gravity" and self.edge is None and self.x is None and self.y is None:
-            raise ValueError(f"the place of the {self.kind} load is missing: give edge, x or y")
+            raise ValueError(f"the place of the {self.kind} load is missing: give `edge`, `x` or `y`")
         return self
 
 
@@ -95,27 +95,23 @@ class Stage(Table):
     hold: list[Hold] = key([], "places that are held from the start of this stage, at the positions that they have then", max_length=100)
     free: list[Hold] = key(
         [],
-        (
-            "supports (of the building, or of an earlier stage) that are removed in this stage. Their "
-            "reactions are reduced to zero in proportion"
-        ),
+        "supports (of the building, or of an earlier stage) that are removed in this stage. Their "
+        "reactions are reduced to zero in proportion",
         max_length=100,
     )
     reference: list[Load] = key(
         [],
-        (
-            "loads B of this stage, multiplied by lambda. Alternatively one imposed displacement: places "
-            "(also supports) move from their present positions, and are held at the end"
-        ),
+        "loads B of this stage, multiplied by lambda. Alternatively one imposed displacement: places "
+        "(also supports) move from their present positions, and are held at the end",
         max_length=100,
     )
     control: list[Watch] = key(
         [],
-        ("control displacement of the curve, as a sum of terms; default: that of the analysis, or the mean displacement under loads B"),
+        "control displacement of the curve, as a sum of terms; default: that of the analysis, or the mean displacement under loads B",
         max_length=50,
     )
     target_multiplier: Annotated[float, Field(gt=0)] | None = key(
-        None, ("value of lambda at which the stage ends; its loads then remain. With `free` supports, lambda = 1 removes them fully")
+        None, "value of lambda at which the stage ends; its loads then remain. With `free` supports, lambda = 1 removes them fully"
     )
     target_displacement: Length | None = key(None, "control displacement at which the stage ends exactly, measured from the unloaded wall")
     stop_fraction: float = key(0.0, "the stage ends when the load drops below this share of its peak in the stage", ge=0, lt=1)
@@ -179,33 +175,33 @@ class CrackOptions(Table):
 
     teeth: Literal["exact", "ripple"] = key(
         "exact",
-        ("rule for the teeth of the saw-tooth law: teeth with the exact fracture energy, or the ripple rule of the thesis"),
+        "rule for the teeth of the saw-tooth law: teeth with the exact fracture energy, or the ripple rule of the thesis",
         source="thesis 4.2",
     )
     ripple: float = key(
         0.05,
-        ("half-width of the teeth as a ratio p of the strength; the load is overestimated by up to about p/2. The thesis uses 0.1 and 0.2"),
+        "half-width of the teeth as a ratio p of the strength; the load is overestimated by up to about p/2. The thesis uses 0.1 and 0.2",
         source="thesis 4.2",
         ge=0.005,
         le=0.5,
     )
     overshoot: bool = key(True, "true: the first tooth rises above the strength; false: the first tooth ends at the strength")
     crack_band: Length | None = key(None, "width h of the crack band; default: by `crack_band_rule`", gt=0)
-    crack_band_rule: Literal["projected", "area"] = key(
+    crack_band_rule: Literal["projected", "extent", "area"] = key(
         "projected",
-        "rule for the width of the crack band. projected: the width of the element across its crack; area: the "
+        "rule for the width of the crack band. projected: the width of a row of elements across the crack; extent: that of "
+        "the element, for cracks askew to the mesh that open every element on their way; area: the "
         "rule of the thesis, sqrt(2 A) for linear and sqrt(A) for quadratic elements of area A",
     )
     cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
         "rotating",
-        "kind of cracking. rotating: cracks rotate with the principal strain; orthotropic: cracks have a fixed "
-        "direction from their first tooth, as in the thesis (overestimates the capacity, see docs/sla.md); "
-        "isotropic: isotropic damage",
+        "kind of cracking. rotating: cracks rotate with the principal strain; orthotropic: cracks have a fixed direction from their "
+        "first tooth, as in the thesis (overestimates the capacity, see docs/sla.md); isotropic: isotropic damage",
         source="Eq. 4.10",
     )
     shear_retention: Annotated[float, Field(ge=1e-6, le=1)] | None = key(
         None,
-        ("shear retention factor of cracked points, as a constant; default: from the smaller modulus of both directions"),
+        "shear retention factor of cracked points, as a constant; default: from the smaller modulus of both directions",
         source="Eq. 4.11",
     )
 
@@ -224,7 +220,7 @@ class Staged:
         stop_fraction: float
         budget: float | None
         without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"]
-        continuation: Literal["newton", "implicit-explicit", "dissipation"]
+        continuation: Literal["newton", "steps", "implicit-explicit", "dissipation"]
         states: list[int]
         probes: list[float]
 
@@ -243,7 +239,7 @@ class Staged:
         names = self.stage_names
         if not self.stages:
             if self.main_stage is not None:
-                raise ValueError("main_stage is given without stages: give `stages`, or remove main_stage")
+                raise ValueError("`main_stage` is given without stages: give `stages`, or remove `main_stage`")
             return
         if len(set(names)) < len(names):
             raise ValueError(f"stages: a name occurs twice among {', '.join(names)}")
@@ -312,11 +308,8 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     )
     stages: list[Stage] = key(
         [],
-        (
-            "sequence of stages, [[analysis.stages]], instead of `reference`. Each stage has its own "
-            "supports, loads and end, and keeps the damage of the stages before. `constant` is applied "
-            "before the first stage"
-        ),
+        "sequence of stages, [[analysis.stages]], instead of `reference`. Each stage has its own supports, loads and end, and keeps the "
+        "damage of the stages before. `constant` is applied before the first stage",
         min_length=1,
         max_length=50,
     )
@@ -324,7 +317,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         None, "name of the stage whose results and figures are reported as those of the analysis; default: the last stage"
     )
     control: list[Watch] = key(
-        [], ("control displacement of the curve, as a sum of terms; default: the mean displacement under loads B"), max_length=50
+        [], "control displacement of the curve, as a sum of terms; default: the mean displacement under loads B", max_length=50
     )
     mesh: MeshOptions = key(MeshOptions(), "elements, [analysis.mesh]")
     events: int = key(5000, "most events", ge=1, le=10_000_000)
@@ -337,45 +330,34 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         None, "the run ends when the compliance has increased by this factor; default 1e4, for blocks 1e5"
     )
     friction_ripple: float = key(
-        0.02,
-        ("ripple p of friction: a joint that slides sticks again after a reverse slip of 4 p times its elastic slip"),
-        ge=0.001,
-        le=0.1,
+        0.02, "ripple p of friction: a joint that slides sticks again after a reverse slip of 4 p times its elastic slip", ge=0.001, le=0.1
     )
     crack_closure: bool | None = key(
         None,
-        (
-            "whether cracks that close regain their stiffness. Default true, with two exceptions: walls with "
-            "fixed or isotropic cracks, and walls under a single increasing load without constant loads or "
-            "stages"
-        ),
+        "whether cracks that close regain their stiffness. Default true, with two exceptions: walls with fixed or isotropic cracks, and "
+        "walls under a single increasing load without constant loads or stages",
     )
     solution: Literal["events", "incremental"] = key(
         "events",
-        "solution method. events: one integration point after the other; incremental, for comparison: steps of arc "
-        "length with a secant iteration, in which all overloaded points lose teeth together (the key `events` then "
-        "limits the number of these steps)",
+        "solution method. events: one integration point after the other; incremental, for comparison: steps of arc length with a secant "
+        "iteration, in which all overloaded points lose teeth together (the key `events` then limits the number of these steps)",
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
-        (
-            "method after an event for which no multiplier of loads B is admissible at all points. "
-            '"continue": equilibrium iterations in displacement control (for rotating cracks without bed '
-            'joints, bars and joints; otherwise load-unload). "load-unload": loads A remain, and the '
-            'greatest lower limit decides. "proportional": all loads of the last equilibrium state are '
-            'reduced together (intermittent proportional loading). "force-release": the force that a tooth '
-            "releases acts on the other points before the load increases again"
-        ),
+        "method after an event for which no multiplier of loads B is admissible at all points. "
+        '"continue": equilibrium iterations in displacement control (for rotating cracks without bed '
+        'joints, bars and joints; otherwise load-unload). "load-unload": loads A remain, and the '
+        'greatest lower limit decides. "proportional": all loads of the last equilibrium state are '
+        'reduced together (intermittent proportional loading). "force-release": the force that a tooth '
+        "releases acts on the other points before the load increases again",
         source="thesis 4.3.1; Pari, Hendriks and Rots 2020; Elias, Frantik and Vorechovsky 2010",
     )
-    continuation: Literal["newton", "implicit-explicit", "dissipation"] = key(
+    continuation: Literal["newton", "steps", "implicit-explicit", "dissipation"] = key(
         "newton",
-        (
-            "method of the equilibrium iterations. newton: Newton's method, with staggered steps if it does "
-            "not converge; implicit-explicit: damage is extrapolated from the last step (one convex problem "
-            "for each step: faster and less accurate); dissipation: as newton, from the first load on, with "
-            "an arc length on dissipated energy where the displacement snaps back"
-        ),
+        "method of the equilibrium iterations. newton: Newton's method, with staggered steps if it does not converge; "
+        "steps: as newton, from the first load on, without events; "
+        "implicit-explicit: damage is extrapolated from the last step (one convex problem for each step: faster and less accurate); "
+        "dissipation: as newton, from the first load on, with an arc length on dissipated energy where the displacement snaps back",
         source="Oliver, Huespe and Cante 2008; Gutierrez 2004",
     )
     algorithm: Literal["update", "refactor"] = key(
@@ -387,15 +369,12 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     probes: list[Length] = key([], "control displacements at which the load of the envelope is reported", max_length=100)
     measured: str | None = key(
         None,
-        (
-            "CSV file of a test, with which the calculated curve is compared. Columns: 'displacement (mm)' "
-            "and 'load (N)', or 'least (N)' and 'greatest (N)' of several tests; lines that begin with # "
-            "give the source"
-        ),
+        "CSV file of a test, with which the calculated curve is compared. Columns: 'displacement (mm)' and 'load (N)', or 'least (N)' "
+        "and 'greatest (N)' of several tests; lines that begin with # give the source",
     )
     section_x: list[Length] = key(
         [],
-        ("x of vertical sections of the wall along which the admissible ranges of lambda (multiplier of loads B) are drawn"),
+        "x of vertical sections of the wall along which the admissible ranges of lambda (multiplier of loads B) are drawn",
         max_length=10,
     )
     seeds: list[int] = key(

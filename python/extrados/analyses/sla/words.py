@@ -32,10 +32,9 @@ def answer_of_wall(r: dict[str, Any], both: bool, row: str = "event") -> str:
         return f"No equilibrium state was found in {r['events']} events. The run ended for this reason: {r['stop']}."
     peaks = r["peak_load_N"] is not None
     text = (
-        f"The load {'has its peak at' if peaks else 'has reached'} {r['greatest_load_N'] / 1e3:.4g} kN with a "
-        f"displacement of {r['greatest_load_displacement_m'] * 1e3:.4g} "
-        f"mm{'' if peaks else ', without having passed a peak'} ({row} {r['greatest_load_event']} of the {r['events']} calculated). The "
-        f"run ended for this reason: {r['stop']}."
+        f"The load {'has its peak at' if peaks else 'has reached'} {r['greatest_load_N'] / 1e3:.4g} kN with a displacement of "
+        f"{r['greatest_load_displacement_m'] * 1e3:.4g} mm{'' if peaks else ', without having passed a peak'} ({row} "
+        f"{r['greatest_load_event']} of the {r['events']} calculated). The run ended for this reason: {r['stop']}."
     )
     text += steps_in_words(r)
     if both and (minus := r.get("minus", {})).get("greatest_load_N") is not None:

@@ -118,8 +118,7 @@ def spoken(r: dict[str, Any], name: str, unit: str, confidence: float) -> str:
     low, high = r["annual_collapse_rate_interval"]
     band = f" ({low:.2g} to {high:.2g} at {100 * confidence:g} %)" if np.isfinite(low) else ""
     return (
-        f"With the hazard of the site, the annual rate of collapse is {r['annual_collapse_rate']:.3g}{band}; "
-        f"the probability of collapse is {100 * r['collapse_probability_in_years']:.2g} % in {r['years']:g} "
-        f"years. Motions with {name} about {r['decisive_intensity']:.3g}{(f' {unit}' if unit else '')} "
-        "contribute most."
+        f"With the hazard of the site, the annual rate of collapse is {r['annual_collapse_rate']:.3g}{band}; the probability of "
+        f"collapse is {100 * r['collapse_probability_in_years']:.2g} % in {r['years']:g} years. Motions with {name} about "
+        f"{r['decisive_intensity']:.3g}{(f' {unit}' if unit else '')} contribute most."
     )

@@ -70,6 +70,12 @@ def describe(
             "dispersion_interval": region.dispersion,
         }
         _curve("curve", "collapse", found, region, grid, columns, result)
+        if np.isnan(region.median).any():
+            result.warnings.append(
+                f"The motions do not show that the probability of collapse increases with {name}: a constant probability lies within the "
+                f"{100.0 * confidence:.3g} % region. The fitted median and dispersion are not determined. Use more motions, or another "
+                "`intensity`."
+            )
         result.answer += (
             f" For the unscaled motions, the fragility curve of collapse over {name} has the median "
             f"{found.median:.4g}{f' {unit}' if unit else ''} and the dispersion {found.dispersion:.3f}."

@@ -55,11 +55,9 @@ def handed_of(context: Context, options: Fragility, base: Rocker, sample: Sample
     contacts = contacts_of(base, context.building, options.form == "linear")
     if contacts is None:
         raise Refused(
-            (
-                "this building cannot be followed with rigid contacts, because a wall, an added hinge or a "
-                "Winkler bed acts on it, or because its joints are not checked (piers without blocks, or form = "
-                '"linear")'
-            ),
+            "this building cannot be followed with rigid contacts, because a wall, an added hinge or a "
+            "Winkler bed acts on it, or because its joints are not checked (piers without blocks, or form = "
+            '"linear")',
             ("analysis", "hand_over"),
         )
     return Handed(Fates.of(context, contacts), sample)

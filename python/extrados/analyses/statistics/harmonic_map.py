@@ -128,8 +128,7 @@ def answer_of(options: HarmonicMap, model: Rocker, found: out.HarmonicMap, cap: 
         )
     k = int(np.nanargmin(lowest))
     return (
-        f"Under {options.cycles} cycles, rocking of the {model.word} starts at {model.uplift:.3f} g. The "
-        f"lowest amplitude that causes collapse is {lowest[k]:.3f} g, at {found.frequencies_Hz[k]:.3f} Hz "
-        f"(omega/p = {found.frequency_ratios[k]:.2f}). {found.safe_pocket_cells} cells of the map are safe, "
-        "although a lower amplitude causes collapse."
+        f"Under {options.cycles} cycles, rocking of the {model.word} starts at {model.uplift:.3f} g. The lowest amplitude that causes "
+        f"collapse is {lowest[k]:.3f} g, at {found.frequencies_Hz[k]:.3f} Hz (omega/p = {found.frequency_ratios[k]:.2f}). "
+        f"{found.safe_pocket_cells} cells of the map are safe, although a lower amplitude causes collapse."
     )

@@ -16,6 +16,7 @@ from scipy.stats import chi2
 
 MOST_STEPS = 200  # of Newton's method
 DIRECTIONS = 120  # on which the border of a confidence region is found
+FLAT = 1e-3  # a curve that grows by no more standard deviations between the least and the greatest intensity is flat
 
 
 class NoFit(ValueError):
@@ -129,7 +130,7 @@ def fit(seen: Capacities) -> Lognormal:
             else f"a step at {low.max():.4g} separates all runs without collapse from all runs with collapse, so the dispersion cannot be estimated"
         )
     a, b = _greatest(low, high, weight[None, :])
-    if not b[0] > 1e-9:
+    if not b[0] * np.log(seen.ends[-1] / seen.ends[0]) > FLAT:
         raise NoFit("the probability does not increase with the intensity")
     return Lognormal(float(np.exp(a[0] / b[0])), float(1.0 / b[0]))
 

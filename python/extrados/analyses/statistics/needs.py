@@ -47,7 +47,7 @@ def _refuse_of_spectra(building: Building) -> None:
         )
     if building.supports.stiffness is not None:
         raise Refused(
-            ("spectra are calculated for structures on rigid ground: remove `stiffness` of [supports], or use `rocking` of a block"),
+            "spectra are calculated for structures on rigid ground: remove `stiffness` of [supports], or use `rocking` of a block",
             ("supports", "stiffness"),
         )
 

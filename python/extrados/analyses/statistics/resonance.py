@@ -230,7 +230,7 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
             table,
             ("aspect", "initial_ratio"),
             "",
-            ("lowest limit of the acceleration at which the rotation grows, divided by the uplift acceleration"),
+            "lowest limit of the acceleration at which the rotation grows, divided by the uplift acceleration",
         ),
         "impulse_period_ratio": Array(np.array(IMPULSE_PERIODS), ("impulse_period_ratio",), "", "T_p/T_n"),
         "impulse_rotation": Array(
@@ -247,7 +247,7 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
             by_rotation,
             ("impulse_rotation", "impulse_start"),
             "",
-            ("energy supplied divided by the energy at the start; impulse of half the natural period (T_p = T_n/2)"),
+            "energy supplied divided by the energy at the start; impulse of half the natural period (T_p = T_n/2)",
         ),
     }
     numbers |= {

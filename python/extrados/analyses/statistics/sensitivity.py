@@ -58,10 +58,8 @@ def sensitivity(
     without = [body for body in made.bodies if isinstance(body, str)] + ["cannot stand"] * int(made.fallen.sum())
     if without:
         raise Refused(
-            (
-                f"{len(without)} of {len(made.bodies)} sampled buildings do not rock ({without[0]}), but "
-                "sensitivity indices require that all rock. Try smaller coefficients of variation"
-            ),
+            f"{len(without)} of {len(made.bodies)} sampled buildings do not rock ({without[0]}), but "
+            "sensitivity indices require that all rock. Try smaller coefficients of variation",
             ("analysis", "uncertain"),
         )
     bodies = [body for body in made.bodies if not isinstance(body, str)]
@@ -73,8 +71,7 @@ def sensitivity(
     swept = sweep(context, "sensitivity", job, len(points), "sensitivity").whole()
     if (failed := int((swept["outcome"] == FAILED).sum())) > 0:
         raise Refused(
-            (f"{failed} of {len(points)} runs for the sensitivity indices fail, but the indices require all runs"),
-            ("analysis", "uncertain"),
+            f"{failed} of {len(points)} runs for the sensitivity indices fail, but the indices require all runs", ("analysis", "uncertain")
         )
     answers = np.stack([np.minimum(swept["peak_ratio"], 1.0), swept["outcome"] == COLLAPSE]).astype(float)
     whole = answers.reshape(2, d + 2, samples)

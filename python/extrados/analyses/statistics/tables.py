@@ -36,18 +36,18 @@ class Hazard(Table):
 
     intensities: list[Level] | None = key(
         None,
-        ("intensities of the hazard curve, in increasing order: numbers in the unit of the measure, or text"),
+        "intensities of the hazard curve, in increasing order: numbers in the unit of the measure, or text",
         min_length=2,
         max_length=1000,
     )
     annual_rates: list[Rate] | None = key(
         None,
-        ("mean annual rates at which the `intensities` are exceeded, in decreasing order; interpolated linearly between logarithms"),
+        "mean annual rates at which the `intensities` are exceeded, in decreasing order; interpolated linearly between logarithms",
         min_length=2,
         max_length=1000,
     )
     file: str | None = key(
-        None, ("CSV file with both columns, instead of `intensities` and `annual_rates`; lines that begin with # are ignored")
+        None, "CSV file with both columns, instead of `intensities` and `annual_rates`; lines that begin with # are ignored"
     )
     years: float = key(50.0, "number of years for which the probability of collapse is given", gt=0, le=1e5)
     acceptable_rate: Rate | None = key(None, "annual rate of collapse that is acceptable: the demand of the verdict")
@@ -65,11 +65,11 @@ class Hazard(Table):
 def check_hazard(intensities: list[float], rates: list[float]) -> None:
     """ValueError where these are no hazard curve."""
     if len(intensities) != len(rates):
-        raise ValueError(f"{len(intensities)} intensities and {len(rates)} annual_rates were given; expected equal numbers")
+        raise ValueError(f"{len(intensities)} intensities and {len(rates)} `annual_rates` were given; expected equal numbers")
     if min(intensities) <= 0.0 or any(b <= a for a, b in pairwise(intensities)):
         raise ValueError("intensities must be above zero and increase")
     if min(rates) <= 0.0 or any(b >= a for a, b in pairwise(rates)):
-        raise ValueError("annual_rates must be above zero and decrease, because stronger motions are rarer")
+        raise ValueError("`annual_rates` must be above zero and decrease, because stronger motions are rarer")
 
 
 class Fragility(RockingTable):
@@ -84,7 +84,7 @@ class Fragility(RockingTable):
     count: int | None = key(None, "number of motions; default 1000, or the whole set", ge=1, le=10_000_000)
     seed: int | None = key(
         None,
-        ("seed of the random numbers, for the uncertain values and (instead of its own seed) for a generated set of motions"),
+        "seed of the random numbers, for the uncertain values and (instead of its own seed) for a generated set of motions",
         ge=0,
         le=2**62,
     )
@@ -97,20 +97,20 @@ class Fragility(RockingTable):
     )
     intensity: Literal["pga", "pga-ratio", "pgv-ratio", "sa", "arias", "scale"] = key(
         "pga",
-        "intensity measure of the keys `levels`, `cloud` and `hazard`. pga: PGA [g]; pga-ratio: PGA/(g tan alpha); "
-        "pgv-ratio: p PGV/(g tan alpha); sa: SA(sa_period) [g]; arias: Arias intensity [m/s]; scale: the scale "
-        "factor itself. alpha: slenderness angle, p: frequency parameter",
+        "intensity measure of the keys `levels`, `cloud` and `hazard`. pga: PGA [g]; pga-ratio: PGA/(g "
+        "tan alpha); pgv-ratio: p PGV/(g tan alpha); sa: SA(`sa_period`) [g]; arias: Arias intensity "
+        "[m/s]; scale: the scale factor itself. alpha: slenderness angle, p: frequency parameter",
         source="Dimitrakopoulos and Paraskeva 2015",
     )
     levels: list[Level] | None = key(
         None,
-        ('intensities to which each motion is scaled: numbers in the unit of the measure, or text such as "0.1 g"'),
+        'intensities to which each motion is scaled: numbers in the unit of the measure, or text such as "0.1 g"',
         min_length=1,
         max_length=500,
     )
     cloud: bool = key(False, "fit fragility curves over the intensities of the unscaled motions", source="Jalayer and others 2017")
     rotation_limits: list[Annotated[float, Field(gt=0, le=1)]] = key(
-        [], ("for a cloud: also fit fragility curves for exceeding these values of rotation divided by critical rotation"), max_length=20
+        [], "for a cloud: also fit fragility curves for exceeding these values of rotation divided by critical rotation", max_length=20
     )
     hazard: Hazard | None = key(None, "hazard curve of the site, which gives the annual rate of collapse")
     histories: int = key(0, "number of motions that are drawn with their responses", ge=0, le=12, source="thesis Fig. 6-6")
@@ -118,12 +118,9 @@ class Fragility(RockingTable):
     sa_damping: float = key(0.05, "damping ratio of SA", ge=0, lt=1)
     uncertain: dict[str, float] = key(
         {},
-        (
-            "coefficients of variation of width, height, thickness and restitution; of the thickness lost at "
-            "worn `corners`; of the `density` of each block; of the `friction` of all joints together; of "
-            "`stiffness` and `damping_ratio` of a compliant base. `imperfection`: random displacement of "
-            "corners and joints of blocks, divided by the shortest joint. Sampled by a Sobol sequence"
-        ),
+        "coefficients of variation of width, height, thickness and restitution; of the thickness lost at worn `corners`; of the "
+        "`density` of each block; of the `friction` of all joints together; of `stiffness` and `damping_ratio` of a compliant base. "
+        "`imperfection`: random displacement of corners and joints of blocks, divided by the shortest joint. Sampled by a Sobol sequence",
     )
     sensitivity: int | None = key(
         None,
@@ -141,10 +138,8 @@ class Fragility(RockingTable):
     )
     hand_over: bool = key(
         False,
-        (
-            "if joints slide or hinges form at other joints, continue this run with rigid contacts; false "
-            "gives the share of these runs in a warning"
-        ),
+        "if joints slide or hinges form at other joints, continue this run with rigid contacts; false "
+        "gives the share of these runs in a warning",
         source="Moreau 1988",
     )
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
@@ -183,7 +178,7 @@ class Fragility(RockingTable):
         if self.levels is not None and self.durations is not None:
             raise ValueError("give either the key `levels` or the key `durations`, not both")
         if (self.levels is not None or self.cloud) and (self.intensity == "sa") != (self.sa_period is not None):
-            raise ValueError('intensity = "sa" requires sa_period, and sa_period requires intensity = "sa"')
+            raise ValueError('intensity = "sa" requires `sa_period`, and `sa_period` requires intensity = "sa"')
         if self.cloud and (self.levels is not None or self.durations is not None):
             raise ValueError("a cloud uses unscaled motions: remove the keys `levels` and `durations`")
         if self.cloud and self.intensity == "scale":
@@ -192,7 +187,7 @@ class Fragility(RockingTable):
                 "them: give another intensity measure"
             )
         if self.rotation_limits and not self.cloud:
-            raise ValueError("rotation_limits is used only with cloud = true")
+            raise ValueError("`rotation_limits` is used only with cloud = true")
         if self.histories and (self.levels is not None or self.durations is not None):
             raise ValueError("the key `histories` shows the unscaled motions: remove the keys `levels` and `durations`")
         if self.hazard is not None and (self.intensity == "scale" or not (self.cloud or self.levels)):
@@ -277,10 +272,8 @@ class HarmonicMap(RockingTable):
     starter: ClassVar = {"amplitudes": "24"}
     frequencies: list[Frequency] | None = key(
         None,
-        (
-            "frequencies of the motion in Hz; default: 40 values of omega/p from 1 to 12 (p: frequency "
-            "parameter of rocking, omega: 2 pi times the frequency)"
-        ),
+        "frequencies of the motion in Hz; default: 40 values of omega/p from 1 to 12 (p: frequency "
+        "parameter of rocking, omega: 2 pi times the frequency)",
         min_length=1,
         max_length=1000,
     )

@@ -133,11 +133,9 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
             raise Refused(f"this {structure.word} has no value of this name; its values are {', '.join(known) or 'none'}", key)
     if what == "arch" and building.joints.restitution == "thesis" and set(names) & set(BY_STONE):
         raise Refused(
-            (
-                "random differences between the blocks make the arch unsymmetric, but the impact rule of the "
-                "thesis covers only symmetric arches: give `restitution` of [joints] another value than "
-                '"thesis"'
-            ),
+            "random differences between the blocks make the arch unsymmetric, but the impact rule of the "
+            "thesis covers only symmetric arches: give `restitution` of [joints] another value than "
+            '"thesis"',
             ("analysis", "uncertain"),
         )
     if "friction" in names and (building.joints.coefficient is None or any(t.friction is not None for t in building.joints.types)):
@@ -146,7 +144,7 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
             ("analysis", "uncertain", "friction"),
         )
     if "corners" in names and getattr(structure, "thickness_factor", 1.0) == 1.0:
-        raise Refused("thickness_factor is 1, so there is no lost thickness that could vary", ("analysis", "uncertain", "corners"))
+        raise Refused("`thickness_factor` is 1, so there is no lost thickness that could vary", ("analysis", "uncertain", "corners"))
 
 
 def _model(building: Building, options: Fragility, factor: dict[str, float], seeds: dict[str, int]) -> tuple[Rocker, Building]:

@@ -248,10 +248,7 @@ def _change(context: Context, options: Strengthen, k: int, one: Change) -> Chang
         base, unit = _option(options.options, way), unit_at(kinds.load(kinds.ANALYSES[options.by].table), way)
         if base is None and one.start is None:
             raise Refused(
-                (
-                    f"{one.vary}: this key of the options has no plain number as its value. Give a number in SI "
-                    "units, or give the key `start`"
-                ),
+                f"{one.vary}: this key of the options has no plain number as its value. Give a number in SI units, or give the key `start`",
                 (*at, "vary"),
             )
         start = base if one.start is None else number_of(one.start, unit, (*at, "start"))
@@ -259,7 +256,7 @@ def _change(context: Context, options: Strengthen, k: int, one: Change) -> Chang
     there = varied(context.building, {one.vary: 0.1}, None)
     if not there and one.start is None:
         raise Refused(
-            (f"{one.vary}: the building has no value above 0 for this key, from which the sizes could start: give the key `start`"),
+            f"{one.vary}: the building has no value above 0 for this key, from which the sizes could start: give the key `start`",
             (*at, "vary"),
         )
     unit = there[0].unit if there else ""

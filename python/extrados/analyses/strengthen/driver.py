@@ -69,9 +69,8 @@ def run(context: Context, options: Strengthen, closely: bool = True) -> Result:
         result.warnings.append(f"Existing building: {before.unfound}.")
     if before.bound == "upper":
         result.warnings.append(
-            "Joints in compression slide in the mechanism of the existing building. Its capacity is "
-            "therefore an upper bound, or the lowest value found without dilatancy. The curves of capacity "
-            "over size are upper bounds."
+            "Joints in compression slide in the mechanism of the existing building. Its capacity is therefore an upper bound, or the "
+            "lowest value found without dilatancy. The curves of capacity over size are upper bounds."
         )
     if isinstance(measure, Statics) and len(measure.senses) == 1 and building.supports.abutting_wall is None:
         result.warnings.append(measure.other_sense_told(building))

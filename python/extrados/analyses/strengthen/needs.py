@@ -28,7 +28,7 @@ def needs(context: Context, options: Strengthen) -> Iterator[Need]:
         if is_spatial(building):
             if "[supports] abutting_wall" in building.special_keys:
                 yield partial(
-                    _refuse, "limit analysis in space neglects an abutting wall: remove abutting_wall", ("supports", "abutting_wall")
+                    _refuse, "limit analysis in space neglects an abutting wall: remove `abutting_wall`", ("supports", "abutting_wall")
                 )
             yield partial(refuse_in_space, context, options)
             yield lambda: building.refuse_weightless(building.solids())
@@ -61,15 +61,14 @@ def _refuse(text: str, key: tuple[str | int, ...]) -> None:
 def _refuse_directions(options: Strengthen) -> None:
     if options.directions:
         raise Refused(
-            ("the key `directions` is only for blocks in space: to analyse the blocks in space, give `direction`"),
-            ("analysis", "directions"),
+            "the key `directions` is only for blocks in space: to analyse the blocks in space, give `direction`", ("analysis", "directions")
         )
 
 
 def _refuse_without_peak(context: Context) -> None:
     if context.deck.motion is None or is_set(context.deck.motion):
         raise Refused(
-            ('`safety_factor` with by = "tilt" refers to the peak of one motion: give a single [motion], or an `acceleration`'),
+            '`safety_factor` with by = "tilt" refers to the peak of one motion: give a single [motion], or an `acceleration`',
             ("analysis", "safety_factor"),
         )
     context.refuse_motion()
@@ -87,10 +86,10 @@ def _refuse_unlimited(options: Strengthen) -> None:
     """Refused where ties are sought by runs without a range of forces, or over a range of places."""
     for k, tie in enumerate(options.ties):
         if tie.beam_weight is not None:
-            raise Refused('beam_weight, the weight of a ring beam, requires by = "tilt": remove beam_weight', ("analysis", "ties", k))
+            raise Refused('`beam_weight`, the weight of a ring beam, requires by = "tilt": remove `beam_weight`', ("analysis", "ties", k))
         if not np.isfinite(tie.greatest):
             raise Refused(
-                f'by = "{options.by}" finds the force by repeated runs: give yield_force, the greatest force considered',
+                f'by = "{options.by}" finds the force by repeated runs: give `yield_force`, the greatest force considered',
                 ("analysis", "ties", k),
             )
         if tie.start_to is not None or tie.far_to is not None:

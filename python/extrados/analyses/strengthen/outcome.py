@@ -41,7 +41,7 @@ def arrays_of(context: Context, before: Worth, sized: list[Sized]) -> dict[str, 
             "stones",
             rest,
             "m",
-            ("blocks of the existing building (number 0/block) and with each alternative (number of the alternative/block)"),
+            "blocks of the existing building (number 0/block) and with each alternative (number of the alternative/block)",
         ),
         **packed("stones_moved", moved, "m", "the same blocks, displaced by the governing mechanism"),
     }

@@ -41,11 +41,11 @@ class Anchorage(Table):
 
         plate = whole("plate_width", "plate_height")
         if not plate and (self.compressive_strength is not None or self.shear_strength is not None):
-            raise ValueError("compressive_strength and shear_strength also require plate_width and plate_height")
+            raise ValueError("`compressive_strength` and `shear_strength` also require `plate_width` and `plate_height`")
         if plate and self.compressive_strength is None and self.shear_strength is None:
-            raise ValueError("plate_width and plate_height require compressive_strength, shear_strength or both")
+            raise ValueError("`plate_width` and `plate_height` require `compressive_strength`, `shear_strength` or both")
         if (self.shear_strength is None) != (self.wall_thickness is None):
-            raise ValueError("shear_strength and wall_thickness require each other: give both")
+            raise ValueError("`shear_strength` and `wall_thickness` require each other: give both")
         whole("bond_length", "bond_diameter", "bond_strength")
         return self
 
@@ -86,17 +86,17 @@ class TieOption(Tie):
     @model_validator(mode="after")
     def _range(self) -> "TieOption":
         if self.hoop and self.far_to is not None:
-            raise ValueError("a hoop has only one height: give start_to, and remove far_to")
+            raise ValueError("a hoop has only one height: give `start_to`, and remove `far_to`")
         if any(len(point) != len(self.start) for point in (self.start_to, self.far_to) if point is not None):
-            raise ValueError("start_to and far_to: expected the same number of coordinates as in start")
+            raise ValueError("`start_to` and `far_to`: expected the same number of coordinates as in `start`")
         if "places" in self.model_fields_set and self.start_to is None and self.far_to is None:
-            raise ValueError("the key `places` requires start_to or far_to, the second end of the range")
+            raise ValueError("the key `places` requires `start_to` or `far_to`, the second end of the range")
         if self.debonding_force is not None and self.source is None:
-            raise ValueError("debonding_force requires its source: the document with the formula, or the test")
+            raise ValueError("`debonding_force` requires its source: the document with the formula, or the test")
         if self.source is not None and self.debonding_force is None:
-            raise ValueError("the key `source` is used only with debonding_force: remove source")
+            raise ValueError("the key `source` is used only with `debonding_force`: remove `source`")
         if self.debonding_force is not None and (self.yield_force is not None or self.works_in != "tension"):
-            raise ValueError("debonding_force: a bonded strip acts in tension and has no yield_force")
+            raise ValueError("debonding_force: a bonded strip acts in tension and has no `yield_force`")
         if self.prestress:
             raise ValueError("prestress: the analysis calculates the force of the tie, and plastic collapse does not depend on prestress")
         return self
@@ -185,11 +185,11 @@ class Strengthen(LimitAnalysisTable):
     def _target(self) -> "Strengthen":
         given = [n for n in ("acceleration", "safety_factor", "probability") if getattr(self, n) is not None]
         if len(given) != 1:
-            raise ValueError("give exactly one target: acceleration, safety_factor or probability")
+            raise ValueError("give exactly one target: `acceleration`, `safety_factor` or `probability`")
         if (self.by == "fragility") != (self.probability is not None):
             raise ValueError('the key `probability` requires by = "fragility", and by = "fragility" requires the key `probability`')
         if self.acceleration is not None and self.by != "tilt":
-            raise ValueError(f'the target acceleration requires by = "tilt"; with by = "{self.by}" give a safety_factor')
+            raise ValueError(f'the target `acceleration` requires by = "tilt"; with by = "{self.by}", give a `safety_factor`')
         if self.by == "tilt" and self.options:
             raise ValueError('options: with by = "tilt", give these keys in this table instead')
         if "levels" in self.model_fields_set and not self.fragility:

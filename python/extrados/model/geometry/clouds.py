@@ -225,10 +225,9 @@ def uncertain(fits: Sequence[Fit], thickness: float) -> tuple[str, ...]:
         return ()
     return (
         (
-            f"The points lie up to {1000.0 * worst.most:.3g} mm (95th percentile) from the fitted {worst.name}. "
-            f"This is more than a tenth of the thickness of {1000.0 * thickness:.3g} mm, so the capacity of the "
-            "fitted body is uncertain. Divide the points into parts of the fitted shape, or give the blocks "
-            "as solids"
+            f"The points lie up to {1000.0 * worst.most:.3g} mm (95th percentile) from the fitted {worst.name}. This is more than a "
+            f"tenth of the thickness of {1000.0 * thickness:.3g} mm, so the capacity of the fitted body is uncertain. Divide the points "
+            "into parts of the fitted shape, or give the blocks as solids"
         ),
     )
 
@@ -240,11 +239,9 @@ def _refuse_other_shapes(fits: Sequence[Fit], thickness: float, given: float | N
         return
     cure = "If the points show one face only, give `thickness`" if given is None else "If the points show both faces, remove `thickness`"
     raise BadGeometry(
-        (
-            f"the points lie up to {1000.0 * worst.most:.3g} mm (95th percentile) from the fitted {worst.name}, "
-            f"which is more than a quarter of the thickness of {1000.0 * thickness:.3g} mm. {cure}; otherwise "
-            f"the points do not form {shape}: divide them, or give the blocks as solids"
-        ),
+        f"the points lie up to {1000.0 * worst.most:.3g} mm (95th percentile) from the fitted {worst.name}, "
+        f"which is more than a quarter of the thickness of {1000.0 * thickness:.3g} mm. {cure}; otherwise "
+        f"the points do not form {shape}: divide them, or give the blocks as solids",
         ("structure", "scan", "thickness"),
     )
 

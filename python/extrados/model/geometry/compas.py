@@ -42,7 +42,7 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
         faults = {AXES[a]: next(k for k, m in meshes.items() if section_of(*m, a) is None) for a in (1, 0, 2)}
         told = ", ".join(f"block {key} along {a}" for a, key in faults.items())
         raise NoView(
-            (f"{name}: a plane section requires blocks that are prisms perpendicular to one plane, and these blocks are not ({told})"),
+            f"{name}: a plane section requires blocks that are prisms perpendicular to one plane, and these blocks are not ({told})",
             ("structure", "file"),
         )
     blocks, ground, depths = [], [], []

@@ -186,9 +186,8 @@ class _Near:
         self._compared += int(count.sum())
         if self._compared > MOST_COMPARED:
             raise BadGeometry(
-                f"the drawing is too dense: its {len(self.size)} outlines have more than {MOST_COMPARED:,} pairs of "
-                "edges that are near each other, the limit of this program. Give the outlines fewer points, and "
-                "the ground fewer segments"
+                f"the drawing is too dense: its {len(self.size)} outlines have more than {MOST_COMPARED:,} pairs of edges that are near "
+                "each other, the limit of this program. Give the outlines fewer points, and the ground fewer segments"
             )
         return _spread(numbers, count)
 

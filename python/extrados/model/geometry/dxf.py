@@ -455,15 +455,15 @@ def _drawing(found: _Read, known: Mapping[str, Layer], name: str, scale: float, 
             outlines.append((layer, "", face))
         loose = [(end.place, end.gap) for end in net.loose]
         notes.append(
-            f"{len(outlines) - len(closed)} blocks were joined from {len(lines)} loose lines and arcs whose ends are within "
-            f"{1e3 * tolerance:g} mm (join_tolerance)"
+            f"{len(outlines) - len(closed)} blocks were joined from {len(lines)} loose lines and arcs whose "
+            f"ends are within {1000.0 * tolerance:g} mm (`join_tolerance`)"
         )
     if found.hidden:
         told = ", ".join(f"{n} of layer '{layer}' ({why})" for (layer, why), n in sorted(found.hidden.items()))
         notes.append(f"entities that the drawing does not display are not read: {told}")
     if not outlines and stones:
         near = [gap for _, gap in loose if gap is not None]
-        hint = f"; ends of lines are at least {1e3 * min(near):.3g} mm apart (see join_tolerance)" if near else ""
+        hint = f"; ends of lines are at least {1000.0 * min(near):.3g} mm apart (see `join_tolerance`)" if near else ""
         hint += f"; {notes[-1]}" if found.hidden else ""
         raise BadGeometry(f"{name}: the layers read contain no closed polyline, and no lines that form a closed outline{hint}")
     if len(outlines) > MOST_BLOCKS:

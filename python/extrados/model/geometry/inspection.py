@@ -66,8 +66,7 @@ class Inspection:
         shown = "; ".join(
             (
                 f"blocks {self.between(flaw)} {'are' if flaw.kind == 'gap' else 'overlap by'} "
-                f"{length(flaw.depth)}{' apart' if flaw.kind == 'gap' else ''} near x = {flaw.place[0]:.4g} m, y = "
-                f"{flaw.place[1]:.4g} m"
+                f"{length(flaw.depth)}{' apart' if flaw.kind == 'gap' else ''} near x = {flaw.place[0]:.4g} m, y = {flaw.place[1]:.4g} m"
             )
             for flaw in flaws[:SHOWN]
         )
@@ -112,13 +111,12 @@ class Inspection:
         gaps = [f for f in self.of("open") if self.mends(f) is not None]
         if gaps:
             found.append(
-                f"{_count(gaps, 'gap')} wider than contact_tolerance ({1e3 * self.tolerance:g} mm) "
-                f"{'is' if len(gaps) == 1 else 'are'} modelled as open, which changes the forces on the blocks: "
-                f"{self._told(gaps)}; {self._cure(gaps)}"
+                f"{_count(gaps, 'gap')} wider than `contact_tolerance` ({1000.0 * self.tolerance:g} mm) {('is' if len(gaps) == 1 else 'are')} "
+                f"modelled as open, which changes the forces on the blocks: {self._told(gaps)}; {self._cure(gaps)}"
             )
         if self.drawing.loose:
             (x, y), gap = min(self.drawing.loose, key=lambda end: np.inf if end[1] is None else end[1])
-            near = "" if gap is None else f", {length(gap)} from the next line (see join_tolerance)"
+            near = "" if gap is None else f", {length(gap)} from the next line (see `join_tolerance`)"
             many = len(self.drawing.loose)
             found.append(
                 f"{many} end{'s' if many > 1 else ''} of loose lines {'meet' if many > 1 else 'meets'} no other line, so these "
@@ -128,9 +126,8 @@ class Inspection:
             heights = sorted({round(y, 4) for _, y in self.levels})
             named = ", ".join(f"'{self.names[i]}'" for i, _ in self.levels[:SHOWN])
             found.append(
-                f"no support is below the horizontal soles of {named}{(' and others' if len(self.levels) > SHOWN else '')} "
-                f"at y = {', '.join(f'{y:.4g}' for y in heights)} m. To make supports of these soles, give "
-                "`foundation_levels`"
+                f"no support is below the horizontal soles of {named}{(' and others' if len(self.levels) > SHOWN else '')} at y = "
+                f"{', '.join(f'{y:.4g}' for y in heights)} m. To make supports of these soles, give `foundation_levels`"
             )
         return found
 
@@ -141,8 +138,8 @@ class Inspection:
         if closed:
             worst = closed[0]
             found.append(
-                f"{_count(closed, 'gap or overlap', 'gaps and overlaps')} of up to {length(worst.depth)} were closed within "
-                f"contact_tolerance ({1e3 * self.tolerance:g} mm). The widest is between {self.between(worst)}."
+                f"{_count(closed, 'gap or overlap', 'gaps and overlaps')} of up to {length(worst.depth)} were "
+                f"closed within `contact_tolerance` ({1000.0 * self.tolerance:g} mm). The widest is between {self.between(worst)}."
             )
         return found
 

@@ -28,14 +28,13 @@ def closed(
 def told(gaps: np.ndarray, mortar: float, grown: float) -> tuple[str, ...]:
     """The note on gaps [m] that were closed; grown: volume or area of the blocks after over before."""
     if not len(gaps):
-        return (f"mortar_gap {1000.0 * mortar:.3g} mm: no joint is drawn as a gap, so the key has no effect",)
+        return (f"`mortar_gap` {1000.0 * mortar:.3g} mm: no joint is drawn as a gap, so the key has no effect",)
     least, most = (f"{1e3 * gap:.3g}" for gap in (gaps.min(), gaps.max()))
     return (
         (
-            f"{len(gaps)} joints that are drawn as gaps of {(most if least == most else f'{least} to {most}')} "
-            f"mm were closed (mortar_gap {1000.0 * mortar:.3g} mm): the faces on both sides were moved to the "
-            f"middle of the mortar. The volume of the blocks increased by {100.0 * (grown - 1.0):.3g} %, with "
-            "the density of the blocks"
+            f"{len(gaps)} joints that are drawn as gaps of {(most if least == most else f'{least} to {most}')} mm were closed "
+            f"(`mortar_gap` {1000.0 * mortar:.3g} mm): the faces on both sides were moved to the middle of the mortar. The volume of "
+            f"the blocks increased by {100.0 * (grown - 1.0):.3g} %, with the density of the blocks"
         ),
     )
 
@@ -83,7 +82,7 @@ def closed_outlines(outlines: Sequence[np.ndarray], names: Sequence[str], mortar
     for name, outline in zip(names, moved, strict=True):
         if signed_area(outline) <= 0.0 or crossing_edges(outline) is not None:
             raise BadGeometry(
-                f"block '{name}': closing joints of {1e3 * mortar:.3g} mm gives an outline that crosses itself; reduce mortar_gap",
+                f"block '{name}': closing joints of {1000.0 * mortar:.3g} mm gives an outline that crosses itself; reduce `mortar_gap`",
                 ("structure", "mortar_gap"),
             )
     area = [sum(map(signed_area, those)) for those in (outlines, moved)]

@@ -318,7 +318,7 @@ class AisledVault(PresetStructure):
     word: ClassVar = "church section"
     kind: Literal["aisled-vault"]
     preset: Literal["vezelay-like", "colombier-like", "colombier-tall"] | None = key(
-        None, ("estimated dimensions of a church in the manner of thesis 3.5; keys that are given replace its values")
+        None, "estimated dimensions of a church in the manner of thesis 3.5; keys that are given replace its values"
     )
     radius: Length = key(about="radius of the centre line of the nave vault", gt=0)
     thickness: Length = key(about="thickness of the nave vault", gt=0)
@@ -334,7 +334,7 @@ class AisledVault(PresetStructure):
     aisle_springing: Length | None = key(None, "height of the centres of the aisle vaults above the ground", gt=0)
     aisle_span: Length | None = key(None, "clear span of the aisles; alternatively give `half_width`", gt=0)
     half_width: Length | None = key(
-        None, ("distance from the axis of the nave to the outer face of the buttresses; the aisles take the remaining width"), gt=0
+        None, "distance from the axis of the nave to the outer face of the buttresses; the aisles take the remaining width", gt=0
     )
     buttress_width: Length | None = key(None, "width of the outer buttresses", gt=0)
     buttress_top: Length | None = key(

@@ -98,18 +98,13 @@ class Arch(Structure):
     depth: Length = key(1.0, "depth out of plane", gt=0)
     skew: Angle = key(
         0.0,
-        (
-            "for an arch in space: skew angle in plan between its faces and a square section; coursing "
-            "joints remain parallel to the springings"
-        ),
+        "for an arch in space: skew angle in plan between its faces and a square section; coursing "
+        "joints remain parallel to the springings",
         gt=-75,
         lt=75,
     )
     stones_across: int = key(
-        1,
-        ("for an arch in space: number of blocks in a course across the depth; every other course is offset by half a block"),
-        ge=1,
-        le=200,
+        1, "for an arch in space: number of blocks in a course across the depth; every other course is offset by half a block", ge=1, le=200
     )
 
     @model_validator(mode="after")

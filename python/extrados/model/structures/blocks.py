@@ -123,11 +123,8 @@ class LayerTable(Table):
     name: str = key(about="name of the layer, in upper or lower case", max_length=255)
     role: Literal["stones", "ground", "joints", "left-out"] = key(
         "stones",
-        (
-            "meaning of the layer. stones: blocks; ground: lines of the ground, like the layer GROUND; "
-            "joints: lines along joints, so that [[joints.types]] can name these joints by the layer; "
-            "left-out: the layer is not read"
-        ),
+        "meaning of the layer. stones: blocks; ground: lines of the ground, like the layer GROUND; joints: lines along joints, so that "
+        "[[joints.types]] can name these joints by the layer; left-out: the layer is not read",
     )
     material: str | None = key(None, "material of the blocks on this layer: a name in [materials]")
 
@@ -146,30 +143,23 @@ class Blocks(Structure):
     kind: Literal["blocks"]
     file: str | None = key(
         None,
-        (
-            "file with the blocks, in the folder of the deck. Sections: JSON, COMPAS JSON or DXF; solids: "
-            "OBJ, STL, glTF (GLB), IFC or COMPAS JSON; with [structure.scan], a point cloud: PLY, XYZ, LAS "
-            "or LAZ"
-        ),
+        "file with the blocks, in the folder of the deck. Sections: JSON, COMPAS JSON or DXF; solids: OBJ, STL, glTF (GLB), IFC or "
+        "COMPAS JSON; with [structure.scan], a point cloud: PLY, XYZ, LAS or LAZ",
         max_length=500,
     )
     unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(
-        None, ("unit of the file, if the file gives none (DXF without $INSUNITS, COMPAS, OBJ, STL, point clouds)")
+        None, "unit of the file, if the file gives none (DXF without $INSUNITS, COMPAS, OBJ, STL, point clouds)"
     )
     up: Literal["y", "z"] | None = key(
         None,
-        (
-            "axis of a file of solids that points upward; default z, for glTF y. With y, the x axis remains, "
-            "and the z axis of the file becomes -y"
-        ),
+        "axis of a file of solids that points upward; default z, for glTF y. With y, the x axis remains, "
+        "and the z axis of the file becomes -y",
     )
     section: Plane | None = key(
         None,
-        (
-            "plane of a file in space that is the section; the second letter is the vertical axis. Default: "
-            "for DXF, and for OBJ and STL without volume, the plane that contains everything. With this "
-            "key, solids of OBJ and STL that are prisms perpendicular to the plane are read as a section"
-        ),
+        "plane of a file in space that is the section; the second letter is the vertical axis. Default: "
+        "for DXF, and for OBJ and STL without volume, the plane that contains everything. With this "
+        "key, solids of OBJ and STL that are prisms perpendicular to the plane are read as a section",
     )
     layers: list[str] | None = key(None, "layers of the drawing that are read as blocks; default: all layers", max_length=200)
     layer: list[LayerTable] = key([], "layers of the drawing with a material or another meaning, [[structure.layer]]", max_length=200)
@@ -177,7 +167,7 @@ class Blocks(Structure):
         1e-3, "ends of loose lines and arcs of a drawing that are closer than this distance are joined", gt=0, le=0.1
     )
     origin: Annotated[list[Length], Field(min_length=2, max_length=2)] | Literal["lower-left"] | None = key(
-        None, ('point [x, y] of the file that becomes the origin, or "lower-left" of all blocks; for georeferenced surveys')
+        None, 'point [x, y] of the file that becomes the origin, or "lower-left" of all blocks; for georeferenced surveys'
     )
     block: list[BlockTable] | None = key(None, "blocks of the structure, if no file is given", max_length=20000)
     ground: list[list[Length]] | None = key(
@@ -195,22 +185,16 @@ class Blocks(Structure):
     )
     contact_tolerance: Length = key(
         1e-4,
-        (
-            "tolerance of contacts: faces that are closer than this value touch each other; overlaps below "
-            "this value are ignored; contacts of solids that are narrower carry no force. `check` reports "
-            "the tolerance that would close each gap. The default for solids is at most 1/10000 of their "
-            "size"
-        ),
+        "tolerance of contacts: faces that are closer than this value touch each other; overlaps below this value are ignored; contacts "
+        "of solids that are narrower carry no force. `check` reports the tolerance that would close each gap. The default for solids is "
+        "at most 1/10000 of their size",
         gt=0,
         le=0.1,
     )
     mortar_gap: Length | None = key(
         None,
-        (
-            "greatest thickness of joints that are drawn as gaps. The faces on both sides of such a joint "
-            "are moved to the middle of the gap, so that the blocks touch. Default: gaps wider than "
-            "`contact_tolerance` stay open"
-        ),
+        "greatest thickness of joints that are drawn as gaps. The faces on both sides of such a joint are moved to the middle of the "
+        "gap, so that the blocks touch. Default: gaps wider than `contact_tolerance` stay open",
         gt=0,
         le=0.1,
     )

@@ -191,12 +191,12 @@ class Bonded(Table):
 
     begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course (whole or half); the courses above alternate")
     lintels: bool = key(
-        True, ("true: a single block is the lintel over each opening; false: the units above rest on the units beside the opening")
+        True, "true: a single block is the lintel over each opening; false: the units above rest on the units beside the opening"
     )
     lintel_height: Length | None = key(None, "height of the lintels; default: one course", gt=0)
     lintel_bearing: Length | None = key(None, "bearing length of a lintel at each side; default: half a unit", gt=0)
     least_unit: float = key(
-        0.25, ("a cut piece that is smaller than this share of the length or height of a unit is joined to its neighbour"), ge=0, le=0.5
+        0.25, "a cut piece that is smaller than this share of the length or height of a unit is joined to its neighbour", ge=0, le=0.5
     )
 
     def bond(self, unit_length: float, unit_height: float) -> Bond:

@@ -33,10 +33,8 @@ class Span(Table):
     )
     intrados: list[list[Length]] | None = key(
         None,
-        (
-            'for shape = "surveyed": measured points [x, y] of the intrados from springing to springing '
-            "(both at y = 0); the points give span and rise"
-        ),
+        'for shape = "surveyed": measured points [x, y] of the intrados from springing to springing '
+        "(both at y = 0); the points give span and rise",
         min_length=4,
         max_length=2000,
     )
@@ -44,10 +42,10 @@ class Span(Table):
     rise: Length = key(about="rise of the intrados", gt=0)
     thickness: Length = key(about="thickness of the arch at the crown, including all rings", gt=0)
     springing_thickness: Length | None = key(
-        None, ("thickness of the arch at the springings, with linear variation along the intrados; default: as at the crown"), gt=0
+        None, "thickness of the arch at the springings, with linear variation along the intrados; default: as at the crown", gt=0
     )
     haunch_radius: Length | None = key(
-        None, ("radius of the side arcs of a three-centred arch; default: the radius for which each side arc subtends 60 degrees"), gt=0
+        None, "radius of the side arcs of a three-centred arch; default: the radius for which each side arc subtends 60 degrees", gt=0
     )
     rings: int = key(1, "number of rings of equal thickness; rings can slide on each other and separate", ge=1, le=10)
     voussoirs: int = key(40, "number of voussoirs of each ring; even for a pointed arch", ge=4, le=2000)
@@ -59,7 +57,7 @@ class Span(Table):
         if not isinstance(given, dict) or given.get("shape") != "surveyed" or not isinstance(given.get("intrados"), list):
             return given
         if twice := [name for name in ("span", "rise") if name in given]:
-            raise ValueError(f"`{twice[0]}`: the points of `intrados` determine this value: remove this key")
+            raise ValueError(f"{twice[0]}: the points of `intrados` determine this value: remove this key")
         points = [point for point in given["intrados"] if isinstance(point, list) and len(point) == 2]
         if len(points) < len(given["intrados"]) or not all(isinstance(v, int | float) for point in points for v in point):
             raise ValueError("intrados: expected points [x, y] in metres")
@@ -190,7 +188,7 @@ def _three_centred(a: float, b: float, side: float | None, share: np.ndarray) ->
         normal = np.column_stack([np.sin(turn), np.cos(turn)])
         return a * normal, normal
     if b - side < 1e-9 * b:
-        raise BadGeometry("three-centred arch: haunch_radius must be less than the rise")
+        raise BadGeometry("three-centred arch: `haunch_radius` must be less than the rise")
     radius = ((a - side) ** 2 + b * b - side * side) / (2.0 * (b - side))
     angle = float(np.arctan2(radius - b, a - side))  # that the side arcs subtend
     length = side * angle

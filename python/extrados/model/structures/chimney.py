@@ -58,10 +58,8 @@ class Chimney(Spatial):
     rings: int = key(about="number of rings from the ground to the top", ge=1, le=400)
     blocks: int = key(
         1,
-        (
-            "number of blocks in a ring; every other ring is offset by half a block. 1: each ring is a "
-            "single body, for instance if steel bands tie it"
-        ),
+        "number of blocks in a ring; every other ring is offset by half a block. 1: each ring is a "
+        "single body, for instance if steel bands tie it",
         ge=1,
         le=100,
     )

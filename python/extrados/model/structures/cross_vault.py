@@ -106,10 +106,8 @@ class CrossVault(Spatial):
     voussoirs: int = key(about="number of courses of a barrel from springing to springing; an even number", ge=4, le=400)
     edge: Length | None = key(
         None,
-        (
-            "horizontal distance by which the webs extend over the support, beyond the point of the extrados "
-            "at the springing; default: the thickness"
-        ),
+        "horizontal distance by which the webs extend over the support, beyond the point of the extrados "
+        "at the springing; default: the thickness",
         ge=0,
     )
     stone_length: Length | None = key(
@@ -117,12 +115,12 @@ class CrossVault(Spatial):
     )
     springers: int = key(
         1,
-        ("number of courses above the springing that form a single block in each corner; with 0, each web has its own support"),
+        "number of courses above the springing that form a single block in each corner; with 0, each web has its own support",
         ge=0,
         le=100,
     )
     oblong: float = key(
-        1.0, ("length of the bay, divided by its width; if it is not 1, the barrel across the bay is an ellipse"), gt=0.2, lt=5
+        1.0, "length of the bay, divided by its width; if it is not 1, the barrel across the bay is an ellipse", gt=0.2, lt=5
     )
     thickness_factor: float = key(1.0, "effective thickness, divided by the real thickness; 0.8 for worn corners", gt=0, le=1)
 

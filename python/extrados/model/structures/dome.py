@@ -75,10 +75,8 @@ class Dome(Spatial):
     lunes: int = key(about="stones in a ring", ge=4, le=400)
     bond: Literal["lunes", "running"] = key(
         "lunes",
-        (
-            "position of the head joints. lunes: above each other, as in a dome that is cracked into lunes; "
-            "running: every other ring is offset by half a block"
-        ),
+        "position of the head joints. lunes: above each other, as in a dome that is cracked into lunes; "
+        "running: every other ring is offset by half a block",
     )
     thickness_factor: float = key(1.0, "effective thickness, divided by the real thickness; 0.8 for worn corners", gt=0, le=1)
 

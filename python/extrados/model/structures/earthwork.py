@@ -20,14 +20,14 @@ class Fill(Table):
     cohesion: Stress = key(0.0, "cohesion of the soil, which increases the passive pressure", ge=0)
     passive: float = key(
         0.0,
-        ("share of the passive pressure by Rankine that acts on blocks which move into the fill; programs for arch bridges use 0.5"),
+        "share of the passive pressure by Rankine that acts on blocks which move into the fill; programs for arch bridges use 0.5",
         source="Gilbert and Melbourne 1994",
         ge=0,
         le=1,
     )
     dispersal: Literal["boussinesq", "even"] = key(
         "boussinesq",
-        ("how a load spreads to the blocks within `dispersal_angle`. boussinesq: by the stresses of Boussinesq; even: uniformly"),
+        "how a load spreads to the blocks within `dispersal_angle`. boussinesq: by the stresses of Boussinesq; even: uniformly",
     )
     dispersal_angle: Angle = key(
         30.0, "angle from the vertical within which a load spreads; 26.6 degrees is a slope of 1 in 2", ge=0, le=70

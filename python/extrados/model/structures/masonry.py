@@ -66,7 +66,7 @@ class Column(Structure):
     rocks_as: ClassVar[RocksAs] = "block"
     starter: ClassVar = {"height": "4.0"}
     width: Length = key(
-        about=("width at the base; for round drums, the diameter over the corners of the facets (or arrises of the flutes)"), gt=0
+        about="width at the base; for round drums, the diameter over the corners of the facets (or arrises of the flutes)", gt=0
     )
     height: Length | None = key(None, "total height, which is divided equally among the drums", gt=0)
     drums: int = key(1, "number of equal drums", ge=1, le=2000)
@@ -81,10 +81,8 @@ class Column(Structure):
     )
     dowel_reach: Length | None = key(
         None,
-        (
-            "for `dem`: length of each dowel in the drum above it. A dowel comes out if the drums separate "
-            "by more than this length; default: never"
-        ),
+        "for `dem`: length of each dowel in the drum above it. A dowel comes out if the drums separate "
+        "by more than this length; default: never",
         gt=0,
     )
 
@@ -104,7 +102,7 @@ class Column(Structure):
         if self.dowel_reach is not None and self.dowels is None:
             raise ValueError("`dowel_reach` requires dowels: give the shear strength of the dowels")
         if self.flute_depth >= 0.25 * self.width:
-            raise ValueError(f"flute_depth {self.flute_depth:g} m is not below 1/4 of the width {self.width:g} m")
+            raise ValueError(f"`flute_depth` {self.flute_depth:g} m is not below 1/4 of the width {self.width:g} m")
         return self
 
     @property

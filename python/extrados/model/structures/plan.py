@@ -47,7 +47,7 @@ class WallOpening(Table):
     z: Range = key(about="[from, to] above the floor of the storey")
     lintel: Lintel | None = key(None, "beam over it")
     through: bool = key(
-        False, ("whether the opening extends through the floors above; `z` is then measured from the floor of `storey` up to its head")
+        False, "whether the opening extends through the floors above; `z` is then measured from the floor of `storey` up to its head"
     )
 
     @model_validator(mode="after")
@@ -122,11 +122,9 @@ class Corner(Table):
 
     walls: list[str] = key(about="names of the two walls; the second wall abuts on the first", min_length=2, max_length=2)
     bond: Literal["bonded", "weak", "joint", "open"] = key(
-        about=(
-            "connection of the two walls. bonded: one masonry; weak: beside the corner, the elements of the "
-            "second wall have a lower strength; joint: a joint of [joints] between the walls, which opens, "
-            "slides up and down, and crushes; open: connected only by floors"
-        )
+        about="connection of the two walls. bonded: one masonry; weak: beside the corner, the elements of the "
+        "second wall have a lower strength; joint: a joint of [joints] between the walls, which opens, "
+        "slides up and down, and crushes; open: connected only by floors"
     )
     strength: float = key(0.5, "for a weak corner: tensile strength of the corner, divided by that of the wall", gt=0, le=1)
 
@@ -159,14 +157,11 @@ class StoreyFloor(Table):
     storey: int = key(about="number of the storey below the floor", ge=1)
     kind: Literal["rigid", "flexible", "joists", "none"] = key(
         "flexible",
-        (
-            "kind of floor. flexible: membrane with the stiffness `young` times `thickness`; rigid: "
-            "practically rigid (concrete slab of 30 GPa and 0.2 m); joists: bars across the floor in one "
-            "direction; none: only the load of the floor acts"
-        ),
+        "kind of floor. flexible: membrane with the stiffness `young` times `thickness`; rigid: practically rigid (concrete slab of 30 "
+        "GPa and 0.2 m); joists: bars across the floor in one direction; none: only the load of the floor acts",
     )
     walls: list[str] | None = key(
-        None, ("names of the walls around the floor, in order; default: all walls of the storey, if they form a single ring"), min_length=3
+        None, "names of the walls around the floor, in order; default: all walls of the storey, if they form a single ring", min_length=3
     )
     young: Stress | None = key(None, "for a flexible floor: its elastic modulus; for joists: the elastic modulus of their wood", gt=0)
     thickness: Length | None = key(None, "of a flexible floor", gt=0)
@@ -177,23 +172,18 @@ class StoreyFloor(Table):
     pitch: Angle | None = key(None, "slope of a roof from the horizontal", gt=0, le=75)
     roof: Literal["rafters", "trusses", "purlins"] | None = key(
         None,
-        (
-            "structure of a pitched roof. rafters: pairs of rafters that meet in the middle between the two "
-            "walls of `bears_on` and push these walls apart (not if a rigid floor ties them); trusses: "
-            "rafters with ties, without thrust; purlins: beams along the ridge between the two walls of "
-            "`bears_on`, without thrust"
-        ),
+        "structure of a pitched roof. rafters: pairs of rafters that meet in the middle between the two walls of `bears_on` and push "
+        "these walls apart (not if a rigid floor ties them); trusses: rafters with ties, without thrust; purlins: beams along the ridge "
+        "between the two walls of `bears_on`, without thrust",
     )
     bears_on: list[str] = key(
         [], "walls that carry the load, in proportion to their length; default: all walls around the floor", max_length=100
     )
     seat: Seat | None = key(
         None,
-        (
-            "seat of the floor on the walls of `bears_on`: only friction under its load restrains the "
-            "floor, and the floor slides off if the wall moves away by more than the length of the seat. Only shells "
-            "consider this. Default: the floor is connected to its walls"
-        ),
+        "seat of the floor on the walls of `bears_on`: only friction under its load restrains the "
+        "floor, and the floor slides off if the wall moves away by more than the length of the seat. Only shells "
+        "consider this. Default: the floor is connected to its walls",
     )
 
     @model_validator(mode="after")
@@ -259,7 +249,7 @@ class Prestress(Table):
 
     wall: str = key(about="name of the wall")
     force: Force = key(about="downward, in all, spread evenly", gt=0)
-    x: Range | None = key(None, ("[from, to] along the wall from its start, for instance the bearing of a beam; default: the whole length"))
+    x: Range | None = key(None, "[from, to] along the wall from its start, for instance the bearing of a beam; default: the whole length")
     level: Annotated[int, Field(ge=1)] | None = key(None, "storey on whose top the force acts; default: the highest storey of the wall")
 
 
@@ -294,11 +284,8 @@ class RingBeam(Table):
     walls: list[str] = key([], "names of the walls; default: all walls of the storey", max_length=200)
     reinforcement: Reinforcement | None = key(
         None,
-        (
-            "bars of the beam. In frames, they give the plastic moment of its hinges and its strength as a "
-            "tie; the material of the beam then requires `compressive_strength`. Default: the beam remains "
-            "elastic"
-        ),
+        "bars of the beam. In frames, they give the plastic moment of its hinges and its strength as a tie; the material of the beam "
+        "then requires `compressive_strength`. Default: the beam remains elastic",
     )
 
     @model_validator(mode="after")

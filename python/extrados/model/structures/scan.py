@@ -28,12 +28,12 @@ class Scan(Table):
         None, "heights of the bed joints of a wall above its foot, in increasing order; replaces `courses`", min_length=1, max_length=2000
     )
     block_length: Length | None = key(
-        None, ("length of a block along the course, in running bond, rounded to equal blocks; default: each course is a single block"), gt=0
+        None, "length of a block along the course, in running bond, rounded to equal blocks; default: each course is a single block", gt=0
     )
     thickness: Length | None = key(None, "thickness, if the points show only one face of the wall, or only the intrados", gt=0)
     axis: Angle | None = key(
         None,
-        ("direction of the horizontal axis of a barrel in plan, from +x towards +y; default: direction with the least misfit"),
+        "direction of the horizontal axis of a barrel in plan, from +x towards +y; default: direction with the least misfit",
         ge=-360,
         le=360,
     )

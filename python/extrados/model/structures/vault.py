@@ -95,10 +95,8 @@ class Vault(PresetStructure):
     kind: Literal["vault"]
     preset: Literal["dejong-a", "dejong-b"] | None = key(
         None,
-        (
-            "all dimensions of one interpretation of the vault of thesis 3.4, inferred from its results; "
-            "keys that are given replace its values"
-        ),
+        "all dimensions of one interpretation of the vault of thesis 3.4, inferred from its results; "
+        "keys that are given replace its values",
     )
     radius: Length = key(about="radius of the centre line of the vault", gt=0)
     thickness: Length = key(about="thickness of the vault", gt=0)
@@ -111,7 +109,7 @@ class Vault(PresetStructure):
     )
     height: Length = key(about="height of the buttresses from the ground to the level given by `height_to`", gt=0)
     height_to: Literal["extrados", "centre"] = key(
-        "extrados", ("level up to which `height` is measured: the extrados at the springing, or the centre of the vault")
+        "extrados", "level up to which `height` is measured: the extrados at the springing, or the centre of the vault"
     )
     depth: Length = key(1.0, "depth out of plane", gt=0)
 

@@ -25,7 +25,7 @@ class Leg(Table):
 
     length: Length = key(about="total length of the leg, including the corners at its ends", gt=0, le=1e4)
     turn: Literal["left", "right"] = key(
-        "left", ("side of the previous leg on which this leg begins, at a right angle; no effect on the first leg")
+        "left", "side of the previous leg on which this leg begins, at a right angle; no effect on the first leg"
     )
     openings: list[Opening] = key([], "rectangular openings: x along the leg from its start, y upward", max_length=200)
 
@@ -148,7 +148,7 @@ class Wall(Bonded, Spatial):
     legs: list[Leg] = key(
         about="straight parts (legs) of the wall in order, each at a right angle to the previous one", min_length=1, max_length=200
     )
-    closed: bool = key(False, ("whether the last leg meets the first one, as around a courtyard; all corners are then left-hand corners"))
+    closed: bool = key(False, "whether the last leg meets the first one, as around a courtyard; all corners are then left-hand corners")
     begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course at a free end of the wall: whole or half")
 
     @model_validator(mode="after")

@@ -52,7 +52,7 @@ class Bar(Table):
     area: Annotated[float, Field(gt=0)] = key(about="cross-section in m^2")
     material: str = key(about="a name of [materials]")
     bonded: bool = key(
-        False, ("true: the bar is embedded and moves with each element that it crosses; false: it is attached only at its ends")
+        False, "true: the bar is embedded and moves with each element that it crosses; false: it is attached only at its ends"
     )
     yield_strength: Stress | None = key(
         None, "yield stress of the bar in tension and compression; replaces the strengths of its material", gt=0
@@ -85,7 +85,7 @@ class Panel(Laid, MeshedWall):
     unit_length: Length | None = key(None, "length of a unit (brick or block), for analyses of blocks", gt=0)
     unit_height: Length | None = key(None, "height of a unit (brick or block)", gt=0)
     outline: str | None = key(
-        None, ("DXF file of closed polylines: the outline of the wall and of the openings; replaces `width`, `height` and `openings`")
+        None, "DXF file of closed polylines: the outline of the wall and of the openings; replaces `width`, `height` and `openings`"
     )
     outline_unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(None, "unit of the drawing, if the file gives none")
 
@@ -113,10 +113,7 @@ class Panel(Laid, MeshedWall):
     def pier_assembly(self, density: float) -> Assembly:
         if self.outline:
             raise NoView(
-                (
-                    "piers of a panel are found between rectangular openings, but the panel has an `outline`: give "
-                    "the openings as rectangles"
-                ),
+                "piers of a panel are found between rectangular openings, but the panel has an `outline`: give the openings as rectangles",
                 ("structure", "outline"),
             )
         if any(region.material or region.thickness for region in self.regions):
@@ -173,7 +170,7 @@ class MeshGroup(Table):
     )
     pressure: Vector | None = key(None, "[x, y, z] force per area on the elements of the group, applied together with the weight")
     force: Force3 | None = key(
-        None, ("[x, y, z] total force, applied together with the weight and distributed evenly over the nodes of the group")
+        None, "[x, y, z] total force, applied together with the weight and distributed evenly over the nodes of the group"
     )
 
 
@@ -192,7 +189,7 @@ class MeshFile(MeshedWall):
     )
     groups: list[MeshGroup] = key(
         [],
-        ("for shells in space: properties of the groups of the file, [[structure.groups]]; if groups overlap, the last one counts"),
+        "for shells in space: properties of the groups of the file, [[structure.groups]]; if groups overlap, the last one counts",
         max_length=1000,
     )
     scale: float = key(1.0, "length in metres of one unit of the file", gt=0, le=1e6)

@@ -308,8 +308,8 @@ def _step(text: Lines, rows: list[tuple[int, list[str]]], time: np.ndarray, roun
     if not SHORTEST_STEP <= step < LONGEST_STEP:
         raise text.error(
             rows[0][0],
-            f"the time step is {step:g} s, which is not plausible for an accelerogram. If the times are in milliseconds, name "
-            "their column time_ms. If the column contains sample numbers, delete the column",
+            f"the time step is {step:g} s, which is not plausible for an accelerogram. If the times are in milliseconds, name their "
+            "column `time_ms`. If the column contains sample numbers, delete the column",
         )
     return float(np.round(step, 9)), uneven
 

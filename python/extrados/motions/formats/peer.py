@@ -37,7 +37,7 @@ def read(text: Lines) -> list[Record]:
             raise text.error(0, f"the header names {' and '.join(said)}; expected one quantity, as in 'ACCELERATION TIME SERIES'")
         quantity = said[0]
     if (other := SUFFIXES.get(text.path.suffix.lower(), quantity)) != quantity:
-        raise text.error(0, (f"the header names {quantity}, but the suffix {text.path.suffix} of the file means {other}: rename the file"))
+        raise text.error(0, f"the header names {quantity}, but the suffix {text.path.suffix} of the file means {other}: rename the file")
     rows: list[tuple[int, list[str]]] = []
     have = 0
     for number, row in text.blanks(at + 1):

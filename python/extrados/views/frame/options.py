@@ -11,20 +11,15 @@ class FrameOptions(Table):
 
     heights: Literal["dolce", "lagomarsino"] = key(
         "dolce",
-        (
-            "method for the deformable height of piers. dolce: effective height by Dolce; lagomarsino: mean "
-            "height of the adjacent openings (for outer piers: mean of opening and storey)"
-        ),
+        "method for the deformable height of piers. dolce: effective height by Dolce; lagomarsino: mean "
+        "height of the adjacent openings (for outer piers: mean of opening and storey)",
         source="Dolce 1991; Lagomarsino and others 2013",
     )
     shear: Literal["least", "mohr-coulomb", "turnsek-cacovic", "reversed", "damage", "none"] = key(
         "least",
-        (
-            "method for the shear strength of piers. mohr-coulomb: on the compressed part; turnsek-cacovic: "
-            "diagonal cracking; least: the lesser of both; reversed: as least, but cohesion acts only on "
-            "the part that opens in neither sense of the load; damage: friction with damage and softening; "
-            "none: flexure only"
-        ),
+        "method for the shear strength of piers. mohr-coulomb: on the compressed part; turnsek-cacovic: diagonal cracking; least: the "
+        "lesser of both; reversed: as least, but cohesion acts only on the part that opens in neither sense of the load; damage: "
+        "friction with damage and softening; none: flexure only",
         source="NTC 2018, 7.8.2.2; Circ. 7/2019, C8.7.1.3.1; Gambarotta and Lagomarsino 1997",
     )
     cohesion: Stress | None = key(None, "f_v0: shear strength of bed joints at zero compression; default: `cohesion` of [joints]", gt=0)
@@ -49,17 +44,15 @@ class FrameOptions(Table):
     )
     spandrel_drift_tied: float = key(
         0.02,
-        ("drift (chord rotation) at which the flexural strength of a spandrel drops, if it has a tie or ring beam"),
+        "drift (chord rotation) at which the flexural strength of a spandrel drops, if it has a tie or ring beam",
         gt=0,
         le=0.1,
         source="Circ. 7/2019, C8.7.1.3.1.1",
     )
     horizontal_strength: Stress | None = key(
         None,
-        (
-            "f_h: compressive strength of masonry along the wall, for the strut in spandrels with a tie or "
-            "ring beam; default (of this program): half of `compressive_strength`"
-        ),
+        "f_h: compressive strength of masonry along the wall, for the strut in spandrels with a tie or "
+        "ring beam; default (of this program): half of `compressive_strength`",
         gt=0,
         source="NTC 2018, 7.8.2.2.4",
     )
@@ -78,20 +71,17 @@ class FrameOptions(Table):
     )
     spandrel_residual: float | None = key(
         None,
-        ("share of its strength that a spandrel keeps beyond its drift limit; default 0.6 with a lintel, 0.1 without a lintel"),
+        "share of its strength that a spandrel keeps beyond its drift limit; default 0.6 with a lintel, 0.1 without a lintel",
         ge=0,
         le=1,
     )
     flange_strength: Stress | None = key(
-        None, ("shear strength of the vertical section between two walls that meet at a corner; default: the cohesion"), gt=0
+        None, "shear strength of the vertical section between two walls that meet at a corner; default: the cohesion", gt=0
     )
     flanges: Literal["effective", "whole", "none"] = key(
         "effective",
-        (
-            "flanges at corners. effective: a wall lifts at most the weight on the effective width of the "
-            "transverse wall; whole: the weight on the whole pier of the transverse wall; none: corners "
-            "transfer no vertical force"
-        ),
+        "flanges at corners. effective: a wall lifts at most the weight on the effective width of the transverse wall; whole: the "
+        "weight on the whole pier of the transverse wall; none: corners transfer no vertical force",
         source="after EN 1996-1-1, 5.5.3",
     )
     softening: float = key(0.5, 'for shear = "damage": beta, exponent of the resistance beyond the peak', gt=0, lt=2)

@@ -102,9 +102,7 @@ class _Maker(Division):
         rods = self._rods()
         elements = [self._element(strip) for strip in self.strips]
         for k in sorted(self.idle):
-            self.remarks.append(
-                f"Rod {k + 1} has no effect on the frame: it passes no spandrel, and the walls that it joins do not move apart."
-            )
+            self.remarks.append(f"Rod {k + 1} passes no spandrel and joins no walls that move apart: it has no effect on the frame.")
         return EquivalentFrame(
             plan,
             self.nodes,
@@ -162,8 +160,10 @@ class _Maker(Division):
         slides = "" if o.shear in ("none", "damage") else f"piers slide at {o.friction:g} times their compression, "
         corners = ", and walls that meet at corners are not bonded" if self.junctions and not o.flange_strength else ""
         return [
-            f"Neither cohesion nor diagonal_strength is given: {slides}spandrels have no strength{corners}. For masonry in mortar, give "
-            "[joints] cohesion, or diagonal_strength in [analysis.frame]."
+            (
+                f"Neither cohesion nor `diagonal_strength` is given: {slides}spandrels have no strength{corners}. "
+                "For masonry in mortar, give [joints] cohesion, or `diagonal_strength` in [analysis.frame]."
+            )
         ]
 
     def _named(self, name: str) -> int:
@@ -489,18 +489,16 @@ class _Maker(Division):
         concrete = self.building.materials[beam.material].compressive_strength
         if concrete is None:
             raise BadGeometry(
-                (f"ring beam of storey {beam.storey}: its reinforcement requires `compressive_strength` in [materials.{beam.material}]"),
+                f"ring beam of storey {beam.storey}: its reinforcement requires `compressive_strength` in [materials.{beam.material}]",
                 place,
             )
         axis = beam.reinforcement.relative_axis(beam.depth, strip.thickness, concrete)
         if axis > DEEPEST_AXIS:
             raise BadGeometry(
-                (
-                    f"ring beam of storey {beam.storey}, wall '{wall.name}': with a total of {10000.0 * beam.reinforcement.area:.3g} "
-                    f"cm^2 of bars, the neutral axis is at {axis:.2f} of the effective depth. Above {DEEPEST_AXIS:g}, the "
-                    "concrete crushes before the hinge rotates. Reduce reinforcement.area, or increase the depth or "
-                    "the `compressive_strength` of its material"
-                ),
+                f"ring beam of storey {beam.storey}, wall '{wall.name}': with a total of {10000.0 * beam.reinforcement.area:.3g} "
+                f"cm^2 of bars, the neutral axis is at {axis:.2f} of the effective depth. Above {DEEPEST_AXIS:g}, the "
+                "concrete crushes before the hinge rotates. Reduce reinforcement.area, or increase the depth or "
+                "the `compressive_strength` of its material",
                 place,
             )
         moment, tension = beam.reinforcement.plastic_moment(beam.depth, strip.thickness, concrete), beam.reinforcement.tension

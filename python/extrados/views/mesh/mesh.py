@@ -212,7 +212,7 @@ def build_mesh(
 ) -> Mesh:
     """Split the elements of a wall into groups by its regions; unused nodes are dropped, bad elements refused."""
     if options.joint_thickness is not None:
-        raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: remove joint_thickness")
+        raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: remove `joint_thickness`")
     if options.joints is not None:
         raise BadGeometry(f"a structure of kind '{wall.kind}' has no blocks: remove joints")
     if not len(connect):

@@ -24,24 +24,18 @@ class MeshOptions(Table):
 
     size: Length | None = key(
         None,
-        ("target size of the elements; default: 1/20 of the lesser side of the wall; for blocks, 1/8 of the median length of a joint"),
+        "target size of the elements; default: 1/20 of the lesser side of the wall; for blocks, 1/8 of the median length of a joint",
         gt=0,
     )
     joints: Literal["interfaces", "rows"] | None = key(
         None,
-        (
-            "for blocks: interfaces (joints without thickness), which open and slide, or thin rows of "
-            "elements, which only open; default: interfaces. A panel is divided into blocks if this key and "
-            "the size of its unit are given"
-        ),
+        "for blocks: interfaces (joints without thickness), which open and slide, or thin rows of elements, which only open; default: "
+        "interfaces. A panel is divided into blocks if this key and the size of its unit are given",
     )
     joint_thickness: Length | None = key(
         None,
-        (
-            "thickness of the row of elements along each joint between blocks; default: 1/25 of the size, "
-            "and at most 1/5 of the shortest element along a joint. The default stiffness of interfaces is "
-            "that of the block material with this thickness"
-        ),
+        "thickness of the row of elements along each joint between blocks; default: 1/25 of the size, and at most 1/5 of the shortest "
+        "element along a joint. The default stiffness of interfaces is that of the block material with this thickness",
         gt=0,
     )
     element: Literal["T3", "T6", "Q4", "Q8"] = key("Q4", "kind of element; blocks also have triangles if quadrilaterals do not fit")

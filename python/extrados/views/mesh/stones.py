@@ -167,7 +167,7 @@ def _rows(
     bad = np.flatnonzero(element_areas(nodes, "Q4", row) <= 0.0)
     if len(bad):
         raise BadGeometry(
-            f"the row of elements along '{assembly.joint_names[joint[bad[0]]]}' overlaps itself: use a smaller joint_thickness"
+            f"the row of elements along '{assembly.joint_names[joint[bad[0]]]}' overlaps itself: use a smaller `joint_thickness`"
         )
     materials, index, dry = _joint_materials(building, assembly, thickness)
     normal = assembly.normal[joint]
@@ -195,7 +195,7 @@ def _interfaces(
     for strength, energy in (("tension", "fracture_energy"), ("cohesion", "shear_energy")):
         if (missing := np.flatnonzero((value[strength] > 0.0) & np.isnan(value[energy]))).size:
             raise BadGeometry(
-                f"joint '{assembly.joint_names[missing[0]]}' has a {strength} but no {energy}: give joints.{energy}, or {strength} = 0"
+                f"joint '{assembly.joint_names[missing[0]]}' has a `{strength}` but no `{energy}`: give `{energy}` of [joints], or {strength} = 0"
             )
     if (missing := np.flatnonzero(np.isnan(value["compressive_strength"]) != np.isnan(value["crushing_energy"]))).size:
         raise BadGeometry(f"joint '{assembly.joint_names[missing[0]]}': `compressive_strength` and `crushing_energy` require each other")

@@ -161,10 +161,8 @@ class ArchModel:
         value = self.impacts.by_rule[self.rule]
         if value < 0.0:
             raise NoView(
-                (
-                    f'the impact rule "{self.rule}" gives c_v = {value:.3f}, for which the mirrored mechanism would have '
-                    f'to close further. With restitution = "inelastic", c_v is {self.impacts.inelastic:.3f}'
-                ),
+                f'the impact rule "{self.rule}" gives c_v = {value:.3f}, for which the mirrored mechanism would have '
+                f'to close further. With restitution = "inelastic", c_v is {self.impacts.inelastic:.3f}',
                 ("joints", "restitution"),
             )
         return min(value, 1.0)

@@ -110,10 +110,8 @@ class MechanismModel:
             uplift = side * table.gravity_moment / (table.drive * GRAVITY)
             if abs(uplift - state.gamma) > SAME * abs(state.gamma):
                 raise NoView(
-                    (
-                        f"under self-weight the mechanism towards {WORD[side]} starts at {uplift:.6g} g, but limit analysis "
-                        f"gives {state.gamma:.6g} g: a load on the structure is not part of its mass"
-                    ),
+                    f"under self-weight the mechanism towards {WORD[side]} starts at {uplift:.6g} g, but limit analysis "
+                    f"gives {state.gamma:.6g} g: a load on the structure is not part of its mass",
                     WHOLE,
                 )
             made.append(table)

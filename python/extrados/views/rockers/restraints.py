@@ -245,10 +245,7 @@ def _law(one: Tie | Damper, key: Key) -> Law:
         return Law(one.stiffness, 0.0, one.slip_force, -one.slip_force)
     if one.stiffness is None:
         raise NoView(
-            (
-                f"{one.name} has no stiffness EA/L and is therefore rigid until it yields, but rocking requires a "
-                "stiffness: give `stiffness`"
-            ),
+            f"{one.name} has no stiffness EA/L and is therefore rigid until it yields, but rocking requires a stiffness: give `stiffness`",
             key,
         )
     slack = {"tension": 1, "compression": -1, "both": 0}[one.works_in]

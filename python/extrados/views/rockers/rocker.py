@@ -315,10 +315,9 @@ def _restrained(free: Rocker, building: Masonry) -> Rocker:
     if wall is not None and building.supports.rebound is None:
         told += (
             (
-                f"the structure rebounds from the wall with {rebound[0 if sides[0] else 1]:.3f} times its angular "
-                "velocity, calculated from three plastic impacts. For a facade of 0.6 x 3 m, discrete elements "
-                "gave 0.7 to 1.2 times this value at 5 % of critical damping, and less at critical damping "
-                "(docs/rocking.md). If the value matters, give `rebound` of [supports]"
+                f"the structure rebounds from the wall with {rebound[0 if sides[0] else 1]:.3f} times its angular velocity, calculated "
+                "from three plastic impacts. For a facade of 0.6 x 3 m, discrete elements gave 0.7 to 1.2 times this value at 5 % of "
+                "critical damping, and less at critical damping (docs/rocking.md). If the value matters, give `rebound` of [supports]"
             ),
         )
     return replace(

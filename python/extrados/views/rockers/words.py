@@ -23,18 +23,15 @@ def refuse_words(building: Masonry, linear: bool = False) -> None:
         )
     if building.supports.stiffness is not None:
         raise NoView(
-            (
-                "on a compliant base a building moves in more than one coordinate. Only `dem`, and (for one "
-                "block, column or wall) `rocking`, `fragility`, `failure-domain`, `failure-curves` and "
-                "`harmonic-map` can follow this. Remove `stiffness`, or give it only to these analyses, as "
-                "[analysis.supports] of each"
-            ),
+            "on a compliant base a building moves in more than one coordinate. Only `dem`, and (for one block, column or wall) "
+            "`rocking`, `fragility`, `failure-domain`, `failure-curves` and `harmonic-map` can follow this. Remove `stiffness`, or give "
+            "it only to these analyses, as [analysis.supports] of each",
             ("supports", "stiffness"),
         )
     block = rocks_as_block(building)
     if building.joints.energy_ratio is not None and not block:
         raise NoView(
-            ("`energy_ratio` is only for a block: give `restitution`, the ratio of angular velocity after / before an impact"),
+            "`energy_ratio` is only for a block: give `restitution`, the ratio of angular velocity after / before an impact",
             ("joints", "energy_ratio"),
         )
     if linear and not block:
@@ -52,11 +49,8 @@ def refuse_soft_base(building: Masonry) -> None:
     key = ("supports", "stiffness")
     if not rocks_as_block(building):
         raise NoView(
-            (
-                "rocking can follow a compliant base only under one block, column or wall. Remove `stiffness`, "
-                "or give it only to the analysis `dem` (as [analysis.supports]), which follows a compliant base "
-                "under any blocks"
-            ),
+            "rocking can follow a compliant base only under one block, column or wall. Remove `stiffness`, or give it only to the "
+            "analysis `dem` (as [analysis.supports]), which follows a compliant base under any blocks",
             key,
         )
     if building.restraints or building.supports.abutting_wall is not None:
@@ -64,10 +58,8 @@ def refuse_soft_base(building: Masonry) -> None:
     if building.joints.energy_ratio is not None or "restitution" in building.joints.model_fields_set:
         name = "restitution" if building.joints.energy_ratio is None else "energy_ratio"
         raise NoView(
-            (
-                "on a compliant base, springs and dashpots determine the impacts: remove `restitution` and "
-                "`energy_ratio`, and give `damping_ratio` of [supports]"
-            ),
+            "on a compliant base, springs and dashpots determine the impacts: remove `restitution` and "
+            "`energy_ratio`, and give `damping_ratio` of [supports]",
             ("joints", name),
         )
 
@@ -78,10 +70,8 @@ def refuse_stack(building: Masonry, linear: bool = False) -> None:
         raise NoView("rocking of two stacked blocks allows no ties, dampers, hinges or wall: remove them", key)
     if building.supports.stiffness is not None:
         raise NoView(
-            (
-                "two stacked blocks rock on rigid ground here: remove `stiffness`, or use `dem`, which follows a "
-                "compliant base under any blocks"
-            ),
+            "two stacked blocks rock on rigid ground here: remove `stiffness`, or use `dem`, which follows a "
+            "compliant base under any blocks",
             ("supports", "stiffness"),
         )
     if linear:

@@ -170,7 +170,7 @@ def _check(group: MeshGroup, what: str, elements: bool, key: Key) -> None:
     told = [key for key in ("thickness", "material", "linear", "membrane", "pressure") if getattr(group, key)]
     if told and not elements:
         raise BadGeometry(
-            (f"{what}: `{told[0]}` is a key for elements, but this group has no elements: give only the keys `support` and `force`"),
+            f"{what}: `{told[0]}` is a key for elements, but this group has no elements: give only the keys `support` and `force`",
             (*key, told[0]),
         )
     if not (told or group.support or group.force):

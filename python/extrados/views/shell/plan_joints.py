@@ -101,10 +101,8 @@ def strength_of_joint(plan: Plan, building: Description, name: str, size: float)
         raise BadGeometry(f"joint '{name}': `compressive_strength` and `crushing_energy` require each other", ("joints",))
     if not own["tension"] > 0.0:
         raise BadGeometry(
-            (
-                f"joint '{name}' has no `tension`. A joint between shells must hold until it opens: give a "
-                "`tension`, however small, with a `fracture_energy`"
-            ),
+            f"joint '{name}' has no `tension`. A joint between shells must hold until it opens: give a "
+            "`tension`, however small, with a `fracture_energy`",
             ("joints", "tension"),
         )
     if own["friction"] == NO_SLIDING:

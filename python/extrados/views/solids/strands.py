@@ -45,7 +45,7 @@ def damper_strands(building: "Building") -> tuple[Strand, ...]:
         last = GROUND if damper.ground is not None else solid_at(assembly, points[1], damper.end_stone, f"{what}, end", key, "end")
         if first == last:
             raise BadGeometry(
-                (f"{what}: both ends are in the block '{assembly.block_names[first]}'. Move one end into another block, or to the ground"),
+                f"{what}: both ends are in the block '{assembly.block_names[first]}'. Move one end into another block, or to the ground",
                 key,
             )
         found.append(Strand(len(building.ties) + k, points, ((first,), (last,)), False, -damper.most, damper.most))

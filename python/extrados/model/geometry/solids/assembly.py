@@ -190,7 +190,7 @@ def assemble(
             parts = [Polyhedron(vertices, part.faces) for vertices, part in zip(places, parts, strict=True)]
             found = touching(parts, owner, close, near)
             notes = (
-                f"Corners were moved by up to {1e3 * moved:.3g} mm (contact_tolerance {1e3 * close:.3g} mm) onto the planes of their faces",
+                f"Corners were moved by up to {1e3 * moved:.3g} mm (`contact_tolerance` {1e3 * close:.3g} mm) onto the planes of their faces",
             )
     last = np.cumsum([len(s.parts) for s in blocks])
     mass, centroid, inertia = zip(
@@ -328,7 +328,9 @@ def _refuse(names: Sequence[str], met: Touching, a: np.ndarray, b: np.ndarray, c
     narrow = _widest(met.slivers)
     for k in lonely[:MOST_TOLD]:
         told = (
-            f"; the nearest face is {1e3 * near[k]:.3g} mm away: contact_tolerance, or mortar_gap for joints of mortar" if k in near else ""
+            (f"; the nearest face is {1000.0 * near[k]:.3g} mm away: `contact_tolerance`, or `mortar_gap` for joints of mortar")
+            if k in near
+            else ""
         )
         if k in narrow:
             told = (
@@ -352,8 +354,8 @@ def _nearly(names: Sequence[str], gaps: Sequence[tuple[int, int, float]]) -> tup
     other = names[two] if two < len(names) else "the ground"
     return (
         (
-            f"{len(gaps)} pairs of blocks have faces that nearly touch but form no contact. They are at most {1e3 * gap:.3g} "
-            f"mm apart ({names[one]} and {other}); contact_tolerance closes them, or mortar_gap if they are joints of mortar"
+            f"{len(gaps)} pairs of blocks have faces that nearly touch but form no contact. They are at most {1000.0 * gap:.3g} mm "
+            f"apart ({names[one]} and {other}); `contact_tolerance` closes them, or `mortar_gap` if they are joints of mortar"
         ),
     )
 
@@ -375,9 +377,8 @@ def _narrow(names: Sequence[str], slivers: Sequence[tuple[int, int, float]], clo
     other = names[two] if two < len(names) else "the ground"
     return (
         (
-            f"{len(slivers)} contacts are narrower than {1000.0 * close:.3g} mm (`contact_tolerance`). They count "
-            f"as lines or points and carry no force. The widest of these contacts has a width of {1000.0 * width:.3g} "
-            f"mm ({names[one]} and {other})"
+            f"{len(slivers)} contacts are narrower than {1000.0 * close:.3g} mm (`contact_tolerance`). They count as lines or points "
+            f"and carry no force. The widest of these contacts has a width of {1000.0 * width:.3g} mm ({names[one]} and {other})"
         ),
     )
 

@@ -40,10 +40,8 @@ def section_of_meshes(meshes: Sequence[Mesh], plane: Plane, unit: str | None, na
     found = {mesh.stone: section_of(mesh.points, mesh.faces, across) for mesh in meshes}
     if wrong := [title for title, one in found.items() if one is None]:
         raise BadGeometry(
-            (
-                f"{name}: these blocks are not prisms perpendicular to the plane {plane}: {', '.join(wrong[:6])}{(' and others' if len(wrong) > 6 else '')}. "
-                "Give another plane as `section`, or give `direction` to analyse solids"
-            ),
+            f"{name}: these blocks are not prisms perpendicular to the plane {plane}: {', '.join(wrong[:6])}{(' and others' if len(wrong) > 6 else '')}. "
+            "Give another plane as `section`, or give `direction` to analyse solids",
             ("structure", "section"),
         )
     prisms = [(title, scale * one[0], scale * one[1]) for title, one in found.items() if one is not None]
