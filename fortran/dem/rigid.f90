@@ -39,7 +39,7 @@ module dem_rigid
    real(wp), parameter :: natural = 0.002_wp       !! of the time in which a block falls by its own size
    real(wp), parameter :: unhurried = 0.1_wp       !! the same without inertia
    real(wp), parameter :: tolerance = 1.0e-5_wp    !! of the velocity that gravity gives in a step
-   integer, parameter :: most_rounds = 200
+   integer, parameter :: most_rounds = 500
    real(wp), parameter :: at_rest = 1.0e-4_wp      !! of that velocity
    integer, parameter :: most_waits = 5000
    !> Of a normal impulse: no impact where it changes by less in a step
