@@ -260,7 +260,7 @@ def test_a_budget_ends_a_run_with_the_results_so_far() -> None:
     assert result.status == "ok"
     assert result.results["stop"] == "budget of processor time"
     assert result.results["greatest_load_N"] > 0.0
-    assert any("budget of 0.01 s" in warning for warning in result.warnings)
+    assert any("`budget` of 0.01 s" in warning for warning in result.warnings)
 
 
 def test_damage_that_goes_ahead_in_staggered_steps_is_dissipated() -> None:
