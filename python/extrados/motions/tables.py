@@ -98,9 +98,9 @@ class Treated(Motion):
         "scale the motion to this horizontal peak acceleration in the plane of the structure, with one factor for all components",
         gt=0,
     )
-    pgv: Velocity | None = key(None, "scale the motion to this peak velocity (with one factor, as for pga)", gt=0)
-    arias: Velocity | None = key(None, "scale the motion to this Arias intensity (with one factor, as for pga)", gt=0)
-    sa: Acceleration | None = key(None, "scale the motion to this pseudo-acceleration at `sa_period` (with one factor, as for pga)", gt=0)
+    pgv: Velocity | None = key(None, "scale the motion to this peak velocity (one factor for all components)", gt=0)
+    arias: Velocity | None = key(None, "scale the motion to this Arias intensity (one factor for all components)", gt=0)
+    sa: Acceleration | None = key(None, "scale the motion to this pseudo-acceleration at `sa_period` (one factor for all components)", gt=0)
     sa_period: Time | None = key(None, "period for sa", gt=0)
     sa_damping: float = key(0.05, "damping ratio for sa", ge=0, le=0.5)
 

@@ -95,10 +95,10 @@ class TurningValue(ResultModel):
     high: float = fact("a value above")
     tilt_base: float | None = fact("safety factor by limit analysis, with the value of this key in the deck; null without a result")
     rocking_base: float | None = fact("safety factor by rocking, with the value of this key in the deck; null without a result")
-    tilt_low: float | None = fact("safety factor by limit analysis, if this key has its lower value `low`; null without a result")
-    tilt_high: float | None = fact("safety factor by limit analysis, if this key has its higher value `high`")
-    rocking_low: float | None = fact("safety factor by rocking, if this key has its lower value `low`")
-    rocking_high: float | None = fact("safety factor by rocking, if this key has its higher value `high`")
+    tilt_low: float | None = fact("safety factor by limit analysis, with the value `low` of this key; null without a result")
+    tilt_high: float | None = fact("safety factor by limit analysis, with the value `high` of this key")
+    rocking_low: float | None = fact("safety factor by rocking, with the value `low` of this key")
+    rocking_high: float | None = fact("safety factor by rocking, with the value `high` of this key")
     tilt_turns: float | None = fact(
         "value of this key at which the verdict of limit analysis changes; null if no calculated value changes the verdict"
     )
@@ -110,10 +110,10 @@ class TurningValue(ResultModel):
         "displacement that counts as collapse; null without a run"
     )
     dem_low: float | None = fact(
-        "displacement by discrete elements, if this key has its lower value `low`, divided by the displacement that counts as collapse"
+        "displacement by discrete elements, with the value `low` of this key, divided by the displacement that counts as collapse"
     )
     dem_high: float | None = fact(
-        "displacement by discrete elements, if this key has its higher value `high`, divided by the displacement that counts as collapse"
+        "displacement by discrete elements, with the value `high` of this key, divided by the displacement that counts as collapse"
     )
     dem_turns: float | None = fact(
         "value of this key at which the verdict of discrete elements changes; null if no calculated value changes the verdict, or if "

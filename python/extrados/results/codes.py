@@ -58,7 +58,7 @@ class Checked(KindResults):
         "%NBS of NZSEE: capacity divided by demand in the governing check, in percent; null without a demand", "%"
     )
     confidence_factor: float = maybe("confidence factor, by which capacities are divided")
-    behaviour_factor: float = maybe("behaviour factor q of the linear check of NTC, and of the demand on a pier")
+    behaviour_factor: float = maybe("behaviour factor q, which reduces the demand in the linear check of NTC and on a pier")
     bound: Bound = maybe("type of the capacity by the checks: exact, lower bound or upper bound")
     margin_associated: float | None = maybe(
         "if joints slide: capacity / demand of the governing check with associated (dilatant) friction. If this ratio is at least 1 but "

@@ -75,7 +75,7 @@ class TieRun(ResultModel):
 class PairWork(ResultModel):
     """Energy that a pair of blocks, or a block and its support, lost in a run."""
 
-    name: str = fact("names of the two blocks; the ground is given as one support")
+    name: str = fact("names of the two blocks; all supports together are called the ground")
     friction_J: float = fact("energy lost by friction", "J")
     damping_J: float = fact("energy lost in dashpots, or by impacts of rigid contacts", "J")
     peak_force_N: float = fact("greatest force between the two blocks, over the output times", "N")

@@ -203,7 +203,9 @@ class FrameLimitCurve(ResultModel):
     the base shear)."""
 
     limit_state: FrameLimitState = fact("strength, first-limit or collapse")
-    exceeded: int = fact("number of runs that exceed the limit state; for pushovers, under the motions as they are (not scaled)")
+    exceeded: int = fact(
+        "number of runs that exceed the limit state; of pushovers, number of buildings that exceed it under their unscaled motion"
+    )
     share: float = fact("share of the runs that have a result")
     share_interval: list[float] = fact("interval of that share (Wilson)")
     median_g: float | None = fact("median of the lognormal fragility curve; null if the runs are not enough to fit a curve", "g")

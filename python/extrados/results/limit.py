@@ -195,13 +195,13 @@ class Tilt(KindResults):
     load_paths: list[LoadPath] = maybe("load paths towards +x, one for each ratio of joint stiffness")
     load_paths_opposite: list[LoadPath] = maybe("load paths to -x")
     non_associated_reason: str = maybe("reason why no collapse state without dilatancy is given besides the upper bound")
-    touching_joints: list[int] = fact("joints at one end of which the thrust line touches the edge, but no hinge forms")
+    touching_joints: list[int] = fact("joints in which the thrust line reaches an end of the joint without forming a hinge")
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires at collapse")
     required_friction_joint: int = fact("the joint that needs it")
     geometric_safety_factor: float | None = fact(
         "geometric safety factor without tilt: 1 divided by the least central part of the joints that "
         "contains a thrust line (found within 0.001), at most 100. Null if not requested, or if a "
-        "thrust line passes within 1 % of the middles of all joints (no horizontal demand)"
+        "thrust line passes through the middle 1 % of all joints (no horizontal demand)"
     )
     weight_N: float = fact("weight of the structure, with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
@@ -394,7 +394,7 @@ class Thrust(KindResults):
     admissible_interval_g: list[float] = fact("accelerations between which an admissible thrust line exists", "g")
     geometric_safety_factor: float | None = fact(
         "geometric safety factor: 1 divided by the least central part of the joints that contains a thrust line (found within 0.001), "
-        "at most 100. Null if not requested, or if a thrust line passes within 1 % of the middles of all joints (no horizontal demand)"
+        "at most 100. Null if not requested, or if a thrust line passes through the middle 1 % of all joints (no horizontal demand)"
     )
     least_part_of_joints: float = maybe("least central part of the joints that contains a thrust line (found within 0.001)")
     weight_N: float = fact("weight of the structure, with its fill", "N")
@@ -634,7 +634,7 @@ class Sweep(KindResults):
         text = f"Among the calculated values, {self.vary} = {self.optimum_value:.4g}{unit} gives the greatest capacity, {best:.3g} g."
         if not self.upper_bound_values:
             return judge(text, None, best, "g")
-        text += f" At {len(self.upper_bound_values)} of {len(self.values)} values joints slide, so the capacity there is an {DILATANT}."
+        text += f" For {len(self.upper_bound_values)} of the {len(self.values)} values, joints slide; the capacity is then an {DILATANT}."
         return judge(text, None, best, "g", bound="upper")
 
 
@@ -660,7 +660,7 @@ class Survey(KindResults):
     )
     weakest: str | None = fact("name of the weakest section; a section that cannot stand has capacity 0")
     weakest_collapse_acceleration_g: float | None = fact("its capacity", "g")
-    median_collapse_acceleration_g: float | None = fact("median capacity of the sections that stand", "g")
+    median_collapse_acceleration_g: float | None = fact("median capacity of the sections that stand under their self-weight", "g")
     sections_per_second: float = fact("speed of the survey", "1/s")
     duality_gap: float = fact("greatest difference between the bounds", "g")
 

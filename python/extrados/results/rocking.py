@@ -210,7 +210,9 @@ class Rocking(KindResults):
     violated: list[str] = fact("other violated assumptions, one sentence each (chaotic response, impact rules)")
     stack: StackRocking = maybe("of two stacked blocks")
     soft_base: SoftBaseRocking = maybe("results of a compliant base ([supports] stiffness)")
-    thrust_line_residual_m: float = maybe("for an arch: greatest error of closure of the thrust line", "m")
+    thrust_line_residual_m: float = maybe(
+        "for an arch: greatest distance between the thrust line and the last hinge, through which it should pass", "m"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The greatest rotation against the critical one; open where the run ended before it settled. Where rigid contacts went
@@ -307,7 +309,7 @@ class FailureDomain(KindResults):
     pocket_begins_ratio: list[float | None] = maybe(
         "for a block: amplitude at which the first safe region begins, divided by the uplift acceleration on a rigid base"
     )
-    mode_names: str = maybe("for a block: names of modes I and II in the literature")
+    mode_names: str = maybe("for a block: meaning of mode_I and mode_II, and their numbers in Zhang and Makris (2001)")
 
     def _violated(self, duration: float, amplitude: float) -> list[str]:
         """What does not hold of the assumptions for a pulse [s, g]: conditions at the neighbouring durations of the map, and impact

@@ -216,7 +216,7 @@ class SolidThrust(KindResults):
             return judge("The most central equilibrium state was not found.", None, None)
         if self.geometric_safety_factor is None:
             return judge(
-                f"At {self.gamma_g:g} g, the resultants of an equilibrium state pass within 1 % of the middles of all contacts.", 0.0, 1.0
+                f"At {self.gamma_g:g} g, the resultants of an equilibrium state pass through the middle 1 % of all contacts.", 0.0, 1.0
             )
         return judge(
             f"At {self.gamma_g:g} g, an equilibrium state stays within the middle {100.0 * part:.3g} % of the contacts.", part, 1.0

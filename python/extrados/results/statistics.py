@@ -412,14 +412,14 @@ class Resonance(KindResults):
         "acceleration, at which the block collapses within this number"
     )
     least_cap_g: float | None = maybe(
-        "for a block: lowest limit of the acceleration at which the rotation grows; null if the two toes differ", "g"
+        "for a block: least cap of the ground acceleration with which the rotation grows; null if the two toes differ", "g"
     )
     least_cap_ratio: float | None = maybe(
-        "lowest limit of the acceleration at which the rotation grows, divided by the uplift acceleration"
+        "least cap of the ground acceleration with which the rotation grows, divided by the uplift acceleration"
     )
     least_cap_ratios: list[list[float]] = maybe(
-        "lowest limits of the acceleration at which the rotation grows, divided by the uplift "
-        "acceleration. Rows: aspect ratios B/H; columns: initial rotations",
+        "least caps of the ground acceleration with which the rotation grows, divided by the uplift acceleration. Rows: aspect "
+        "ratios B/H; columns: initial rotations",
         source="thesis Fig. 6-3",
     )
     aspects: list[float] = maybe("their B/H", source="thesis Fig. 6-3")

@@ -97,8 +97,8 @@ def _all_stages(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.legend(title="stage")
         title = style.save(fig, folder, f"{name}-stages")
     return title, (
-        "Load over displacement in all stages: every event in equilibrium (thin), and envelopes. A dot marks the start of a stage. "
-        "Stages with the same line of action share a panel, with the sign of the first of them."
+        "Load over displacement in all stages. Thin lines: every event in equilibrium. Thick lines: envelopes. A dot marks the start "
+        "of a stage. A stage that begins where an earlier one ended shares its panel; signs are those of the first stage of the panel."
     )
 
 

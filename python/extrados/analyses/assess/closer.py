@@ -148,7 +148,7 @@ def _turning(work: Work, left: int, choice: Choice) -> None:
         if table is None:
             work.not_done.append(
                 "discrete elements at other scale factors were not run: the motion is matched to a code "
-                "spectrum, which is fixed and cannot be scaled with the peak"
+                "spectrum, which one acceleration does not define, so no factor can scale it"
             )
             break
         if left < 1:

@@ -290,7 +290,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     worst = job.collapse(k)
     if worst is None:  # the sweep found it by the same steps
         raise NoAnswer(
-            f"the load at {places[k]:.4g} m causes collapse in the first calculation, but not in the second calculation at this position"
+            f"the load at {places[k]:.4g} m caused collapse in the calculation of all positions, but not in the repeated calculation"
         )
     state, mechanism = worst.state, worst.mechanism
     result = Result("moving-load")

@@ -128,7 +128,7 @@ def _beside(
     if isinstance(limit, CrushingLimit):
         found["crushing_contacts"] = _crushing(limit.assembly, there)
         if options.face_law:
-            found["face_law_reason"] = "the face law neglects crushing and is therefore not calculated here"
+            found["face_law_reason"] = "the capacity by the face law is not calculated, because that law neglects crushing"
     elif options.face_law or (options.face_law is None and slides and len(limit.assembly.a) <= MOST_BESIDE):
         found |= _by_faces(limit, [found_at[round(d, 9)] for d in ends], ends, result)
     if options.block_size and isinstance(sound := found_at[round(ends[0], 9)], Programme):

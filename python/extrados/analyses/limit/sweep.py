@@ -367,5 +367,5 @@ def _words(options: Sweep, r: out.Sweep, located: bool) -> str:
     if counts["no-answer"]:
         text += f" {counts['no-answer']} of {len(r.values)} values have no result."
     if r.upper_bound_values:
-        text += f" At {len(r.upper_bound_values)} of {len(r.values)} values joints slide, so the capacity is an {out.DILATANT}."
+        text += f" For {len(r.upper_bound_values)} of the {len(r.values)} values, joints slide; the capacity is then an {out.DILATANT}."
     return text

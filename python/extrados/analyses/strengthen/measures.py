@@ -309,7 +309,9 @@ class Runs:
             told = "" if verdict is None else f": {verdict.statement}"
             return Worth(None, reason=f"{self.options.by} gives no safety factor{told}")
         if verdict.outcome == "open" and self.options.by in DYNAMIC:  # one run as a sample, or a run that still moves
-            return Worth(None, reason=f"the outcome of `{self.options.by}` is open: {verdict.statement.rstrip('.')}")
+            return Worth(
+                None, reason=f"`{self.options.by}` does not decide whether the structure collapses: {verdict.statement.rstrip('.')}"
+            )
         return Worth(verdict.ratio, verdict.statement.rstrip("."))
 
 

@@ -125,7 +125,10 @@ class _Maker(Division):
         """Remarks on bed joints and ring beams, which the frame simplifies."""
         plan = self.plan
         if plan.beds:
-            self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own shear strength.")
+            self.remarks.append(
+                "The frame does not include the bed joints of [[structure.beds]]: only the shear strength of the masonry limits the "
+                "sliding of piers."
+            )
         if plan.ring_beams:
             elastic = [b for b in plan.ring_beams if b.reinforcement is None]
             if elastic:

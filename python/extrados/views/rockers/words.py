@@ -23,9 +23,9 @@ def refuse_words(building: Masonry, linear: bool = False) -> None:
         )
     if building.supports.stiffness is not None:
         raise NoView(
-            "on a compliant base a building moves in more than one coordinate. Only `dem`, and (for one block, column or wall) "
-            "`rocking`, `fragility`, `failure-domain`, `failure-curves` and `harmonic-map` can follow this. Remove `stiffness`, or give "
-            "it only to these analyses, as [analysis.supports] of each",
+            "on a compliant base a building moves in more than one coordinate. `dem` can follow this; for one block, column or wall, so "
+            "can `rocking`, `fragility`, `failure-domain`, `failure-curves` and `harmonic-map`. Remove `stiffness` from [supports], or "
+            "give it in [analysis.supports] of these analyses only",
             ("supports", "stiffness"),
         )
     block = rocks_as_block(building)
