@@ -337,7 +337,7 @@ def _refuse(names: Sequence[str], met: Touching, a: np.ndarray, b: np.ndarray, c
                 f": the width of its widest contact is {1e3 * narrow[k]:.3g} mm, less than {1e3 * close:.3g} mm{cure}, so this "
                 "contact counts as a line"
             )
-        wrong.append(f"{names[k]} touches no other block and not the ground{told}")
+        wrong.append(f"{names[k]} touches neither another block nor the ground{told}")
     if len(lonely) > MOST_TOLD:
         wrong.append(f"and {len(lonely) - MOST_TOLD} more blocks touch nothing")
     if not lonely and not (b == GROUND).any():
