@@ -36,7 +36,7 @@ def deck_of_ifc(model: Path) -> str:
         raise DeckError([f"{model.name}: {error}"]) from None
     walls, storeys = _by_storey(found, model.name)
     said = [
-        (f"Walls, openings and storeys are read from the model {model.name}. Each wall is the box about its solid."),
+        (f"Walls, openings and storeys are read from the model {model.name}. Each wall is modelled as the box around its solid."),
         *(
             [(f"{found['cut']} walls are cut, for instance gables by a roof. Their boxes are used, which adds masonry.")]
             if found["cut"]

@@ -203,9 +203,9 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         right.set_ylabel("base shear over weight")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "Capacity curves: every state (thin), the envelope and its bilinear idealisation of equal area. Dots: states found by "
-            "equilibrium iterations. Dotted line: Coulomb limit of the level that slides first, which the curve does not include. "
-            "Blue-grey: variants of the assumptions. Grey: other analyses of the run."
+            "Capacity curves. Thin lines: every state. Thick lines: envelopes. Dashed lines: bilinear idealisations of equal area. "
+            "Dots: states found by equilibrium iterations. Horizontal dotted line: Coulomb limit of the level that slides first, which "
+            "the curve does not include. Blue-grey: variants of the assumptions. Grey: other analyses of the run."
         )
 
 

@@ -157,8 +157,8 @@ class Blocks(Structure):
     )
     section: Plane | None = key(
         None,
-        "plane of a file in space that is the section; the second letter is the vertical axis. Default: "
-        "for DXF, and for OBJ and STL without volume, the plane that contains everything. With this "
+        "for a file in space: plane that is read as the section; its second letter is the vertical axis. Default for "
+        "DXF, and for OBJ and STL without volume: the plane that contains all lines and faces. With this "
         "key, solids of OBJ and STL that are prisms perpendicular to the plane are read as a section",
     )
     layers: list[str] | None = key(None, "layers of the drawing that are read as blocks; default: all layers", max_length=200)

@@ -422,7 +422,7 @@ class Bridge(Structure):
     fill: Fill | None = key(None, "soil over the arches")
     surfacing: Surfacing | None = key(None, "road surface or ballast on the fill")
     spandrels: Spandrels | None = key(None, "spandrel walls at the edges of the arches, of which only the weight acts")
-    depth: Length = key(1.0, "width across the bridge that acts as one, for instance between the spandrel walls", gt=0)
+    depth: Length = key(1.0, "width of the bridge that acts as one body, for instance the width between the spandrel walls", gt=0)
 
     @model_validator(mode="after")
     def _piers(self) -> "Bridge":

@@ -47,7 +47,8 @@ class WallOpening(Table):
     z: Range = key(about="[from, to] above the floor of the storey")
     lintel: Lintel | None = key(None, "beam over it")
     through: bool = key(
-        False, "whether the opening extends through the floors above; `z` is then measured from the floor of `storey` up to its head"
+        False,
+        "whether the opening extends through the floors above; sill and head in `z` are then both heights above the floor of `storey`",
     )
 
     @model_validator(mode="after")
@@ -201,7 +202,9 @@ class StoreyFloor(Table):
         if self.roof is not None and not self.load > 0.0:
             raise ValueError(f"a roof of {self.roof} requires `load`, the weight per area of its slopes, above 0")
         if self.roof == "rafters" and self.kind == "joists":
-            raise ValueError("joists tie the two walls: give roof = 'trusses', or another kind of floor")
+            raise ValueError(
+                "roof = 'rafters' pushes the two walls apart, but joists tie them: give roof = 'trusses', or another kind of floor"
+            )
         if self.seat is not None and (self.kind == "none" or self.roof is not None or not self.load > 0.0 or not self.bears_on):
             raise ValueError("seat: expected a level floor of kind 'joists', 'flexible' or 'rigid', with `load` above 0 and `bears_on`")
         if self.walls is not None and (twice := [name for name, n in Counter(self.walls).items() if n > 1]):
@@ -284,8 +287,8 @@ class RingBeam(Table):
     walls: list[str] = key([], "names of the walls; default: all walls of the storey", max_length=200)
     reinforcement: Reinforcement | None = key(
         None,
-        "bars of the beam. In frames, they give the plastic moment of its hinges and its strength as a tie; the material of the beam "
-        "then requires `compressive_strength`. Default: the beam remains elastic",
+        "bars of the beam. In frames, the bars limit the tension of the beam and give it plastic hinges; its material then requires "
+        "`compressive_strength`. Default: the beam remains elastic",
     )
 
     @model_validator(mode="after")

@@ -139,8 +139,8 @@ class _Maker(Division):
             if weak:
                 self.remarks.append(
                     f"The tension of ring beams is not limited, because {', '.join(f'[materials.{name}]' for name in sorted(weak))} "
-                    "has no `tensile_strength`: spandrels beside them have the full strut against a tie. Give the strength, or check the "
-                    "reinforcement."
+                    "has no `tensile_strength`. Then only `horizontal_strength` limits the strut in spandrels beside a ring beam. Give "
+                    "`tensile_strength`, or check the reinforcement."
                 )
 
     def _traces(self) -> list[Trace]:

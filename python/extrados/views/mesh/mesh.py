@@ -212,9 +212,9 @@ def build_mesh(
 ) -> Mesh:
     """Split the elements of a wall into groups by its regions; unused nodes are dropped, bad elements refused."""
     if options.joint_thickness is not None:
-        raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: remove `joint_thickness`")
+        raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: remove `joint_thickness` of the mesh")
     if options.joints is not None:
-        raise BadGeometry(f"a structure of kind '{wall.kind}' has no blocks: remove joints")
+        raise BadGeometry(f"a structure of kind '{wall.kind}' has no blocks: remove `joints` of the mesh")
     if not len(connect):
         raise BadGeometry("the mesh has no elements")
     used, renumbered = np.unique(connect, return_inverse=True)

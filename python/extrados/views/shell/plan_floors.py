@@ -76,9 +76,9 @@ def ring_of_floor(plan: Plan, floor: StoreyFloor, grids: list[WallGrid], number:
     ring = [n for n, before in zip(nodes, nodes[-1:] + nodes[:-1], strict=True) if np.linalg.norm(xyz[n] - xyz[before]) > MEETS]
     if len(ring) < 3 or len(set(ring)) < len(ring):
         twice = next((n for k, n in enumerate(ring) if n in ring[:k]), None)
-        at = "" if twice is None else f" twice at ({xyz[twice, 0]:.3g}, {xyz[twice, 1]:.3g}) m"
+        fault = "encloses no area" if twice is None else f"passes twice through ({xyz[twice, 0]:.3g}, {xyz[twice, 1]:.3g}) m"
         raise BadGeometry(
-            f"{what}: the walls {', '.join(plan.walls[w].name for w, _, _ in walls)} do not form a simple ring: it passes{at or ' no area'}. "
+            f"{what}: the walls {', '.join(plan.walls[w].name for w, _, _ in walls)} do not form a simple ring: this ring {fault}. "
             "Name the walls around the floor in order by `walls`"
         )
     x, y = xyz[ring, 0], xyz[ring, 1]

@@ -328,7 +328,9 @@ def _refuse(names: Sequence[str], met: Touching, a: np.ndarray, b: np.ndarray, c
     narrow = _widest(met.slivers)
     for k in lonely[:MOST_TOLD]:
         told = (
-            (f"; the nearest face is {1000.0 * near[k]:.3g} mm away: `contact_tolerance`, or `mortar_gap` for joints of mortar")
+            (
+                f"; the nearest face is {1000.0 * near[k]:.3g} mm away (give a larger `contact_tolerance`, or `mortar_gap` for a mortar joint)"
+            )
             if k in near
             else ""
         )
@@ -337,7 +339,7 @@ def _refuse(names: Sequence[str], met: Touching, a: np.ndarray, b: np.ndarray, c
                 f": the width of its widest contact is {1e3 * narrow[k]:.3g} mm, less than {1e3 * close:.3g} mm{cure}, so this "
                 "contact counts as a line"
             )
-        wrong.append(f"{names[k]} touches no other block and not the ground{told}")
+        wrong.append(f"{names[k]} touches neither another block nor the ground{told}")
     if len(lonely) > MOST_TOLD:
         wrong.append(f"and {len(lonely) - MOST_TOLD} more blocks touch nothing")
     if not lonely and not (b == GROUND).any():
@@ -355,7 +357,7 @@ def _nearly(names: Sequence[str], gaps: Sequence[tuple[int, int, float]]) -> tup
     return (
         (
             f"{len(gaps)} pairs of blocks have faces that nearly touch but form no contact. They are at most {1000.0 * gap:.3g} mm "
-            f"apart ({names[one]} and {other}); `contact_tolerance` closes them, or `mortar_gap` if they are joints of mortar"
+            f"apart ({names[one]} and {other}). To close these gaps, give a larger `contact_tolerance`, or `mortar_gap` for mortar joints"
         ),
     )
 
