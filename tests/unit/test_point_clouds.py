@@ -194,7 +194,7 @@ def test_a_deck_of_a_point_cloud(tmp_path: Path, sort: str) -> None:
     }
     found = run_analyses(Context(make_deck(tables, tmp_path), threads=1))[0]
     assert found["collapse_acceleration_g"] == pytest.approx((0.2 - 0.015) / 1.5, rel=0.015)
-    assert any("back face: " in w and "points not used" in w for w in found.warnings)
+    assert any("back face: " in w and "points were not used" in w for w in found.warnings)
 
 
 def _xyz(points: np.ndarray) -> bytes:

@@ -661,5 +661,5 @@ def _law(wanted: str, cohesion: float, tension: float) -> str:
     if wanted == "least" and not tension > 0.0:
         return "mohr-coulomb"
     if not tension > 0.0:
-        raise BadGeometry(f"{wanted} needs diagonal_strength", ("analysis", "frame", "shear"))
+        raise BadGeometry(f'shear = "{wanted}" requires `diagonal_strength`', ("analysis", "frame", "shear"))
     return "turnsek-cacovic" if wanted == "turnsek-cacovic" or not cohesion > 0.0 else wanted
