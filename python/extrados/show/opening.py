@@ -259,7 +259,7 @@ def _next_step(run: Stored, lead: dict[str, Any], words: Language) -> str:
                 "A step has no verdict: {step}. Run again with a larger `budget`, or with a later end of the run.", step=r.not_done[0]
             )
         return words(
-            "Compare the reasons below. Then refine the data that decide the difference: measured friction, thickness and restraints first."
+            "Compare the reasons below. Then refine the data that decide the difference: first measure friction, thickness and restraints."
         )
     if outcome == "stands":
         if factor is not None and factor < THIN:

@@ -114,8 +114,8 @@ def _seats(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]
         ax.set_ylabel("base shear [kN]")
         ax.legend()
         return style.save(fig, folder, f"{name}-seats{_suffix(prefix)}"), (
-            "Base shear over the displacement of each floor away from its support on a wall (greatest value "
-            "of both ends). Beyond the dashed line the floor has slid off."
+            "Base shear over the displacement of each floor away from its support on a wall (the greater "
+            "value of its two ends). Beyond the dashed line the floor has slid off."
         )
 
 

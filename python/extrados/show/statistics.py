@@ -408,7 +408,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
                 style.save(fig, folder, f"{name}-impulse"),
                 (
                     f"Energy that one sine impulse of {r.impulse_amplitude_g:.3f} g adds to free rocking (Fig. 6-4). a: "
-                    "from a rotation of a quarter of the critical rotation. b: with T_p = T_n/2."
+                    "several periods T_p, from a quarter of the critical rotation. b: several initial rotations, with T_p = T_n/2."
                 ),
             )
         )

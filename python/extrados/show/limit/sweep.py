@@ -123,7 +123,7 @@ def draw_survey(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         else:
             ax.plot(gamma[order], (np.arange(len(order)) + 1.0) / len(order), color=style.THRUST)
             ax.set_xlabel("collapse acceleration [g]")
-            ax.set_ylabel("share of sections with at most\nthis acceleration")
+            ax.set_ylabel("share of sections with a collapse\nacceleration of at most this value")
         return [(style.save(fig, folder, name), "Collapse acceleration of the sections that carry their self-weight.")]
 
 
