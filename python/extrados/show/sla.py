@@ -132,7 +132,7 @@ def _cracks_by_stage(run: Stored, name: str, folder: Path) -> list[tuple[str, st
     if not shown:
         return []
     title = _draw_cracks(run, name, folder, shown, f"{name}-stage-cracks")
-    return [(title, "Cracks on the deformed shape at the end of each stage, at the same scale.")]
+    return [(title, "Cracks on the deformed shape at the end of each stage. All stages have one scale.")]
 
 
 def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:

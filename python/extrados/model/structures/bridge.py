@@ -111,7 +111,7 @@ class Backing(Table):
     """Masonry over the haunches, one body over each pier and at each end."""
 
     height: Length = key(about="height of the horizontal top of the backing above the springings", gt=0)
-    density: Density | None = key(None, "density; default that of [material]", gt=0, le=30000)
+    density: Density | None = key(None, "density; default: density of [material]", gt=0, le=30000)
 
 
 def intrados(span: Span) -> tuple[np.ndarray, np.ndarray]:

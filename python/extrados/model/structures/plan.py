@@ -127,7 +127,9 @@ class Corner(Table):
         "second wall have a lower strength; joint: a joint of [joints] between the walls, which opens, "
         "slides up and down, and crushes; open: connected only by floors"
     )
-    strength: float = key(0.5, "for a weak corner: tensile strength of the corner, divided by that of the wall", gt=0, le=1)
+    strength: float = key(
+        0.5, "for a weak corner: tensile strength at the corner, divided by the tensile strength of the second wall", gt=0, le=1
+    )
 
     @model_validator(mode="after")
     def _two(self) -> "Corner":
@@ -360,7 +362,7 @@ class Plan(Structure):
                     "the top has z = 0 in the next storey"
                 )
             if (first := heights.setdefault(round(self.bed_height(bed), 9), k)) != k:
-                raise ValueError(f"beds[{k}]: bed {first + 1} has the same height; give all walls of the joint there")
+                raise ValueError(f"beds[{k}]: bed {first + 1} has the same height: name all walls of the joint in one of the two tables")
         names_of_joints = self.joint_names
         for k, name in enumerate(names_of_joints):
             if name in names_of_joints[:k]:
@@ -703,7 +705,7 @@ def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
         (x0, y0), (x1, y1) = wall.start, wall.end
         raise BadGeometry(
             f"{what}: the walls of the storey do not form a simple ring: wall '{wall.name}' from ({x0:g}, {y0:g}) to ({x1:g}, "
-            f"{y1:g}) m meets {met} of them, expected two. Give the walls around the floor by `walls`"
+            f"{y1:g}) m meets {met} of these walls, expected two. Give the walls around the floor by `walls`"
         )
     ring = [walls[0], meets[walls[0]][0]]
     while len(ring) < len(walls):

@@ -139,14 +139,15 @@ class Panel(Laid, MeshedWall):
         for i, region in enumerate(self.regions, start=1):
             if region.thickness not in (None, self.thickness):
                 raise NoView(
-                    f"region {i} of the panel has its own thickness, but all blocks have the same thickness",
+                    f"region {i} of the panel has its own thickness, but all blocks must have the same thickness: remove the "
+                    "thickness of the region",
                     ("structure", "regions", i - 1, "thickness"),
                 )
             if region.material is None:
                 continue
             if density == 0.0:
                 raise NoView(
-                    f"region {i} of the panel has its own material, but [material] has no density",
+                    f"region {i} of the panel has its own material, but [material] has no density: give [material] a density",
                     ("structure", "regions", i - 1, "material"),
                 )
             ratio[region.holds(made.centroid)] = densities[region.material] / density

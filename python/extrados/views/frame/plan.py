@@ -310,7 +310,7 @@ class _Maker(Division):
         rows = []
         for w, _, s in around:
             if (w, level) not in self.along:
-                raise BadGeometry(f"floor on storey {level}: wall '{plan.walls[w].name}' has no masonry there")
+                raise BadGeometry(f"floor on storey {level}: wall '{plan.walls[w].name}' has no masonry at the level of the floor")
             rows.append(self._vector(w, s, level))
         outline = plan.outline(around)
         area = signed_area(outline)

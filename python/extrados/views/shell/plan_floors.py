@@ -69,7 +69,7 @@ def ring_of_floor(plan: Plan, floor: StoreyFloor, grids: list[WallGrid], number:
     for w, start, end in walls:
         own, s = level_nodes(plan, floor.storey, grids[w], number)
         if not len(own):
-            raise BadGeometry(f"{what}: wall '{plan.walls[w].name}' has no masonry there")
+            raise BadGeometry(f"{what}: wall '{plan.walls[w].name}' has no masonry at the level of the floor")
         inside = (s >= min(start, end) - MEETS) & (s <= max(start, end) + MEETS)
         order = np.argsort(s[inside] if end > start else -s[inside], kind="stable")
         nodes += own[inside][order].tolist()
@@ -189,7 +189,9 @@ def _shares(plan: Plan, floor: StoreyFloor, part: Part, grids: list[WallGrid], n
     half = np.diff(s) / 2.0
     np.add.at(shares, own, np.append(half, 0.0) + np.append(0.0, half))
     if not shares.sum() > 0.0:
-        raise BadGeometry(f"floor on storey {floor.storey}: wall '{plan.walls[part[0]].name}' has no masonry there to carry its load")
+        raise BadGeometry(
+            f"floor on storey {floor.storey}: wall '{plan.walls[part[0]].name}' has no masonry at the level of the floor to carry its load"
+        )
     return shares
 
 
