@@ -53,7 +53,7 @@ def parse_ifc(content: bytes) -> dict[str, Any]:
     try:
         import ifcopenshell
     except ImportError:
-        raise Unreadable("needs the extra ifc: pip install extrados[ifc]") from None
+        raise Unreadable("reading IFC requires ifcopenshell. Install it by pip install 'extrados[ifc]'") from None
     model = ifcopenshell.file.from_string(content.decode("utf-8", "replace"))
     try:
         return _parsed(model)

@@ -306,7 +306,7 @@ def _strengthening(run: Stored, lead: dict[str, Any], words: Language) -> str:
     least = r.advice.by_rocking
     if least is not None and least.required_N is not None:
         force = words.quantity(least.required_N, "N")
-        text += " " + words("To prevent collapse by rocking under this motion, the first tie requires {force}.", force=force)
+        text += " " + words("To prevent collapse by rocking under this motion, the first of these ties requires {force}.", force=force)
     return f" {text}"
 
 

@@ -245,7 +245,7 @@ class Rod(Table):
 class Prop(Table):
     """The top of a storey of a wall that cannot move across its plane: what holds it does not move."""
 
-    wall: str = key(about="name of the wall, along x or y")
+    wall: str = key(about="name of the wall, which must run along x or y")
     storey: int = key(about="on top of this storey", ge=1)
 
 
