@@ -247,7 +247,7 @@ def _draw_base(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str
         if len(moving):
             sinking.set_xlim(max(0.0, t[moving[0]] - 0.5), min(t[-1], t[moving[-1]] + 0.5))
         saved = style.save(fig, folder, f"{name}-base")
-    return saved, ("Above: share of the base that is in contact. Below: settlement of the base below the centre of mass (dotted: at rest).")
+    return saved, ("Above: share of the base that is in contact. Below: settlement of the base under the centre of mass (dotted: at rest).")
 
 
 def _once(ax: Any) -> tuple[list[Any], list[str]]:

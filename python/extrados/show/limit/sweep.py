@@ -146,7 +146,7 @@ def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, 
             share,
             where="post",
             color=style.THRUST,
-            label=f"{r.count} random geometries, each point within {1e3 * r.deviation_m:.3g} mm",
+            label=f"{r.count} random geometries, corners displaced by up to {1e3 * r.deviation_m:.3g} mm",
         )
         given = r.given_collapse_acceleration_g
         ax.axvline(given, color=style.HINGE, linestyle="--", label=f"geometry of the deck: {given:.4f} g")
