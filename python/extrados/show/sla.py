@@ -163,8 +163,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_ylabel("load [kN]")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "Load over displacement. Thin lines: every state. Thick lines: envelopes. Dashed lines: bilinear idealisations. "
-            f"Dots: states found by equilibrium iterations. Grey, if present: steps of an incremental solution of the same deck.{_dropped(r)}"
+            "Load over displacement. Thin lines: every state. Thick lines: envelopes. Dashed lines: bilinear idealisations. Dots: states "
+            f"found by equilibrium iterations. Grey, if present: steps of an incremental solution of the same deck.{_dropped(r)}"
         )
 
 

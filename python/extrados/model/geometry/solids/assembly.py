@@ -328,9 +328,7 @@ def _refuse(names: Sequence[str], met: Touching, a: np.ndarray, b: np.ndarray, c
     narrow = _widest(met.slivers)
     for k in lonely[:MOST_TOLD]:
         told = (
-            (
-                f"; the nearest face is {1000.0 * near[k]:.3g} mm away (give a larger `contact_tolerance`, or `mortar_gap` for a mortar joint)"
-            )
+            (f"; the nearest face is {1000.0 * near[k]:.3g} mm away (give a larger `contact_tolerance`, or `mortar_gap` for mortar)")
             if k in near
             else ""
         )
