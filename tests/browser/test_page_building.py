@@ -306,7 +306,7 @@ def test_a_block_is_clicked_and_the_tolerance_tried(page: Any) -> None:
     page.click("text=Sizes")
     page.fill("#field-structure-contact_tolerance", "4 mm")
     page.press("#field-structure-contact_tolerance", "Enter")
-    until(page, "window.extrados.scene.seen?.warnings.some(w => w.includes('contact_tolerance 4 mm'))")
+    until(page, "window.extrados.scene.seen?.warnings.some(w => w.includes('contact_tolerance` 4 mm'))")
     page.evaluate("window.extrados.change({ 'structure.mortar_gap': 0.001 })")
     until(page, "document.querySelector('.bad')?.textContent.includes('touches neither')")
     page.evaluate("window.extrados.change({ 'structure.mortar_gap': 0.012 })")

@@ -196,7 +196,7 @@ WRONG = {
         ROOMS + '[[structure.floors]]\nstorey = 1\nkind = "rigid"\n[[structure.floors]] # here\nstorey = 1\nkind = "rigid"\n' + PUSH,
     ),
     "floor above its wall": (
-        "has no masonry there",
+        "has no masonry at the level of the floor",
         ROOMS.replace('"a", start', '"a", storeys = [1, 1], start')
         + '[[structure.floors]] # here\nstorey = 2\nkind = "rigid"\nwalls = ["a", "b", "c", "d"]\n'
         + PUSH,

@@ -135,7 +135,7 @@ def test_what_a_frame_cannot_be_is_refused():
     ]
     with pytest.raises(BadGeometry, match="does not reach the ground"):
         box(walls=walls, storeys=[3.0, 3.0], floors=[]).frame()
-    with pytest.raises(BadGeometry, match="turnsek-cacovic needs diagonal_strength"):
+    with pytest.raises(BadGeometry, match='shear = "turnsek-cacovic" requires `diagonal_strength`'):
         box().frame(FrameOptions(shear="turnsek-cacovic"))
 
 

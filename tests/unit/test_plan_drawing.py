@@ -108,7 +108,7 @@ def test_assumed_masonry_and_short_pieces_are_stated(tmp_path):
     assumed = " ".join(deck.structure.assumed)
     assert "compressive strength 3 MPa" in assumed and "diagonal strength 50 kPa" in assumed
     assert deck.building.material.density == 1800 and deck.building.joints.cohesion == 1e5
-    assert "The longest of them measures 0.50 m" in assumed
+    assert "The longest of these pieces has a length of 0.50 m" in assumed
 
 
 def test_too_many_walls_are_refused_before_they_are_joined(tmp_path, monkeypatch):

@@ -260,5 +260,5 @@ def test_a_floor_on_a_wall_that_is_not_adjacent_is_refused_by_all():
     floors = [{"storey": 1, "kind": "none", "load": 2e3, "walls": ["south", "a", "north", "west"], "bears_on": ["east"]}]
     made = building(walls=walls, floors=floors)
     for ask in (lambda: made.frame(FrameOptions()), lambda: made.shell(ShellOptions(size=0.5)), lambda: wall_parts(made)):
-        with pytest.raises(BadGeometry, match="wall 'east' of bears_on is not adjacent"):
+        with pytest.raises(BadGeometry, match="wall 'east' of `bears_on` is not adjacent"):
             ask()

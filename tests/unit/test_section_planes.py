@@ -70,7 +70,7 @@ def test_a_drawing_that_is_not_plane_says_what_it_projects(tmp_path: Path) -> No
     with pytest.raises(BadGeometry):
         blocks.assembly(2000.0, tmp_path)  # edge on: lines
     notes = Blocks(kind="blocks", file="two.dxf", section="xz").inspection(tmp_path).notes()  # type: ignore[union-attr]
-    assert any("lines are projected to the plane xz; along y they extend over 2 units" in note for note in notes)
+    assert any("lines are projected to the plane xz, although along y they extend over 2 units" in note for note in notes)
 
 
 @pytest.mark.parametrize("plane", list(PLANES))
@@ -98,5 +98,5 @@ def test_prisms_of_an_obj_across_a_plane(tmp_path: Path) -> None:
     assert blocks.assembly(2000.0, tmp_path).depth == pytest.approx(1.5)
     with pytest.raises(NoView):
         Blocks(kind="blocks", file="arch.obj").assembly(2000.0, tmp_path)
-    with pytest.raises(BadGeometry, match="not prisms across the plane yz: voussoir 0, "):
+    with pytest.raises(BadGeometry, match="not prisms perpendicular to the plane yz: voussoir 0, "):
         Blocks(kind="blocks", file="arch.obj", section="yz").assembly(2000.0, tmp_path)

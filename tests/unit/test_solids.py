@@ -424,7 +424,7 @@ def test_errors_of_a_file_are_reported(folder: Path) -> None:
         "nan.stl": (stl_text({"a": CUBE}).replace("vertex 0.0", "vertex nan", 1), "expected a vertex of three numbers"),
         "lifted.obj": (
             obj(lifted),
-            "upper touches neither another block nor the ground; the nearest face is 0.5 mm away: `contact_tolerance`",
+            "upper touches neither another block nor the ground; the nearest face is 0.5 mm away (give a larger `contact_tolerance`",
         ),
         "pressed.obj": (obj(pressed), "lower and upper overlap by 5 mm, which exceeds 0.1 mm"),
     }

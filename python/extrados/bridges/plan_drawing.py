@@ -226,8 +226,8 @@ def _written(walls: list[DrawnWall], short: Sequence[float], windows: bool, name
     said = [f"Walls are read from the drawing {name}; it gives no heights.", f"Assumed {sills}."]
     if short:
         said.append(
-            f"Not considered: {len(short)} pieces that are hardly longer than thick (by at most {LEAST:g} m), "
-            f"such as ends of walls. The longest of them measures {max(short):.2f} m."
+            f"Not considered: {len(short)} pieces whose length exceeds their thickness by at most {LEAST:g} m, "
+            f"such as ends of walls. The longest of these pieces has a length of {max(short):.2f} m."
         )
     made = []
     for wall in walls:

@@ -36,7 +36,7 @@ def deck_of_ifc(model: Path) -> str:
         raise DeckError([f"{model.name}: {error}"]) from None
     walls, storeys = _by_storey(found, model.name)
     said = [
-        (f"Walls, openings and storeys are read from the model {model.name}. Each wall is the box about its solid."),
+        (f"Walls, openings and storeys are read from the model {model.name}. Each wall is modelled as the box around its solid."),
         *(
             [(f"{found['cut']} walls are cut, for instance gables by a roof. Their boxes are used, which adds masonry.")]
             if found["cut"]
@@ -53,7 +53,7 @@ def parse_ifc(content: bytes) -> dict[str, Any]:
     try:
         import ifcopenshell
     except ImportError:
-        raise Unreadable("needs the extra ifc: pip install extrados[ifc]") from None
+        raise Unreadable("reading IFC requires ifcopenshell. Install it by pip install 'extrados[ifc]'") from None
     model = ifcopenshell.file.from_string(content.decode("utf-8", "replace"))
     try:
         return _parsed(model)

@@ -189,7 +189,12 @@ def _church(s: Any, _: Assembly) -> Iterator[Handle]:
         yield _length("buttress_width", "Width of the outer buttresses", side * (end + width), 0.0, width, lambda x, y: side * x - end)
     else:
         yield _length(
-            "half_width", "Distance of the outer faces from the axis", side * s.half_width, 0.0, s.half_width, lambda x, y: side * x
+            "half_width",
+            "Distance of the outer faces of the buttresses from the axis",
+            side * s.half_width,
+            0.0,
+            s.half_width,
+            lambda x, y: side * x,
         )
         yield _length("buttress_width", "Width of the outer buttresses", side * end, 0.0, width, lambda x, y: s.half_width - side * x)
     aisle_outer = 0.5 * span + s.aisle_thickness

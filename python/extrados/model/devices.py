@@ -17,14 +17,16 @@ class Damper(Table):
 
     name: str | None = key(None, "name in the results; default: damper 1, damper 2 and so on", max_length=80)
     start: Place = key(about="[x, y], in space [x, y, z], of the anchorage in a block")
-    end: Place | None = key(None, "position of the anchorage in a second block; alternatively give `ground`")
-    ground: Place | None = key(None, "position of the anchorage in the ground; it moves with the supports")
+    end: Place | None = key(None, "position of the other end, if it is anchored in a block; otherwise give `ground`")
+    ground: Place | None = key(None, "position of the other end, if it is anchored in the ground; this end moves with the supports")
     start_stone: str | None = key(None, "name of the block at `start`; required if this point lies between two blocks", max_length=80)
     end_stone: str | None = key(None, "name of the block at `end`; required if this point lies between two blocks", max_length=80)
-    damping: Damping | None = key(None, "c of a viscous damper, with force = c rate^n, in N (s/m)^n", gt=0, le=1e10)
-    power: float = key(1.0, "power n of the rate; 1 is a linear damper", source="EN 15129", ge=0.1, le=2)
+    damping: Damping | None = key(
+        None, "c of a viscous damper, in N (s/m)^n: force = c v^n, with the rate of elongation v and n = `power`", gt=0, le=1e10
+    )
+    power: float = key(1.0, "exponent n of the rate of elongation; 1 for a linear damper", source="EN 15129", ge=0.1, le=2)
     slip_force: Force | None = key(None, "force at which a friction damper slides", gt=0)
-    stiffness: AxialStiffness | None = key(None, "stiffness of the brace of a friction damper, which acts before the damper slides", gt=0)
+    stiffness: AxialStiffness | None = key(None, "stiffness of a friction damper before it slides (stiffness of its brace)", gt=0)
 
     @model_validator(mode="after")
     def _whole(self) -> "Damper":
@@ -50,7 +52,7 @@ class Damper(Table):
     def flat(self) -> list[list[float]]:
         """Both ends in a plane section [m]; BadGeometry of a damper in space."""
         if len(self.start) != 2:
-            raise BadGeometry(f"{self.name}: in a plane section, the points of a damper are [x, y]; this damper has other points")
+            raise BadGeometry(f"{self.name}: in a plane section a damper requires points [x, y]; this damper has points [x, y, z]")
         return [self.start, self.far]
 
     @property

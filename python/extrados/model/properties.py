@@ -180,8 +180,8 @@ class Joints(Table):
     )
     damping: Literal["edge", "corner", "rotation", "restitution"] = key(
         "edge",
-        "impact frequency for which the damping is given: edge, corner or rotation. restitution, for a single block: the damping that "
-        "gives the coefficient of restitution of the block (found by trial runs)",
+        "impact at whose frequency the joints have `damping_ratio`. edge: a block lands flat; corner: it lands on a corner; rotation: it "
+        "rotates. restitution, for a single block: damping that gives the coefficient of restitution of the block (found by trial runs)",
         source="thesis Eqs 7.13, 7.17-7.20",
     )
     damping_ratio: float = key(
@@ -193,9 +193,9 @@ class Joints(Table):
     restitution: Literal["thesis", "energy-safe", "inelastic"] | Annotated[float, Field(ge=0, le=1)] = key(
         "inelastic",
         "rule for impacts during rocking (blocks always use the rule of Housner). inelastic: plastic impact with impulses at all "
-        "joints, and all the energy that remains; thesis: momentum balance of the thesis for arches (energy-safe for other sections); "
-        "energy-safe: projection on the mechanism after the impact only. A number is c_v: angular velocity after / before an impact (0 "
-        "to 1)",
+        "joints; rocking keeps all energy that remains. thesis: momentum balance of the thesis for arches (energy-safe for other "
+        "sections). energy-safe: velocities projected on the mechanism after the impact. "
+        "A number is c_v: angular velocity after / before an impact (0 to 1)",
         source="Moreau 1988; thesis Eqs 5.3, 6.2, 6.3, B.3",
     )
     energy_ratio: Annotated[float, Field(ge=0, le=1)] | None = key(
@@ -280,13 +280,13 @@ class Movement(Table):
     dx: Length = key(0.0, "to the right")
     dy: Length = key(
         0.0,
-        "upward movement; negative is a settlement. In space: movement along y, the second direction in "
-        "plan. With `direction`, a plane section requires `dz` for a settlement",
+        "in a plane section: upward movement; negative is a settlement. In space: movement along y, the second direction in plan. An "
+        "analysis of a plane section with `direction` is in space: it requires `dz` for a settlement",
     )
     dz: Length = key(0.0, "in space: upward movement; negative is a settlement")
     turn: Angle = key(0.0, "in a plane section: rotation about the middle of the support, counter-clockwise")
-    start: Time = key(0.0, "when it starts", ge=0)
-    duration: Time = key(1.0, "how long it takes", gt=0)
+    start: Time = key(0.0, "time at which the movement starts", ge=0)
+    duration: Time = key(1.0, "duration of the movement", gt=0)
 
 
 class Initial(Table):

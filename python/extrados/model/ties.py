@@ -19,8 +19,8 @@ class Tie(Table):
 
     name: str | None = key(None, "name in the results; default: tie 1, tie 2 and so on", max_length=80)
     start: Place = key(about="[x, y], in space [x, y, z], of the anchorage in a block; for a hoop, any point at its height")
-    end: Place | None = key(None, "position of the anchorage in a second block; alternatively give `ground`")
-    ground: Place | None = key(None, "anchorage in the ground: a point that stays fixed when supports move")
+    end: Place | None = key(None, "position of the other end, if it is anchored in a block; otherwise give `ground`")
+    ground: Place | None = key(None, "position of the other end, if it is anchored in the ground; this end stays fixed when supports move")
     via: list[Place] = key([], "in space: points of the blocks over which a chain runs, in order from start to end", max_length=1000)
     hoop: bool = key(
         False, "in space: closed hoop around the convex outline of the structure, at the height z of `start`, like the chain of a dome"

@@ -247,7 +247,7 @@ def _draw_base(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str
         if len(moving):
             sinking.set_xlim(max(0.0, t[moving[0]] - 0.5), min(t[-1], t[moving[-1]] + 0.5))
         saved = style.save(fig, folder, f"{name}-base")
-    return saved, ("Above: share of the base that is in contact. Below: settlement of the base below the centre of mass (dotted: at rest).")
+    return saved, ("Above: share of the base that is in contact. Below: settlement of the base under the centre of mass (dotted: at rest).")
 
 
 def _once(ax: Any) -> tuple[list[Any], list[str]]:
@@ -285,7 +285,7 @@ def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: 
             style.numbers(ax.yaxis)
         return style.save(
             fig, folder, f"{name}-friction"
-        ), "Coefficient of friction required at the joints during rocking (white: at rest)."
+        ), "Coefficient of friction required at the joints during rocking. White: the structure is at rest."
 
 
 def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -319,7 +319,9 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
         kinds = ["no rocking", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)", "blocks only slide"]
         for code, text in enumerate(kinds if (codes == SLID).any() else kinds[:SLID]):
             ax.plot([], [], "s", color=style.MODES[code], markeredgecolor=style.EDGE, label=text)
-        ax.set_xlabel({"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(r.pulse, "period T_p [s]"))
+        ax.set_xlabel(
+            {"step": "duration t_p of the first part of the pulse [s]", "rectangular": "duration t_p [s]"}.get(r.pulse, "period T_p [s]")
+        )
         ax.set_ylabel("amplitude [g]")
         ax.set_ylim(0.0, a[-1])
         ax.set_xlim(*((d[0], d[-1]) if len(d) > 1 else (0.5 * d[0], 1.5 * d[0])))

@@ -22,7 +22,7 @@ def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str,
     r = run.results_of(name, FailureCurves)
     duration, amplitude = run.array(name, "duration"), run.array(name, "amplitude")
     natural, slender = run.array(name, "natural_time"), bool(run.array(name, "slender").all())
-    first = {"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(r.pulse, "period T_p [s]")
+    first = {"step": "duration t_p of the first part of the pulse [s]", "rectangular": "duration t_p [s]"}.get(r.pulse, "period T_p [s]")
     # beyond 0.6 of the map a line has less than three times the contrast to paper
     shades = matplotlib.colormaps["cividis"](np.linspace(0.0, 0.6, len(r.curves)))
     fits = [(text, run.array(name, key), line) for key, text, line in FITS if key in run.arrays[name]]

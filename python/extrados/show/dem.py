@@ -208,7 +208,11 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.axis("off")
         saved = style.save(fig, folder, f"{name}-snapshots")
     scale = f" (longest arrow {fastest:.3g} m/s)" if arrows else ""
-    forces = f" Lines: forces in the joints through their places; the longest is {scene.longest / 1e3:.3g} kN." if scene.longest else ""
+    forces = (
+        f" Lines: forces through the centres of compression of the joints; the longest is {scene.longest / 1e3:.3g} kN."
+        if scene.longest
+        else ""
+    )
     return saved, f"Displaced structure, hinges (circles) and velocities of the blocks{scale}.{forces}"
 
 
@@ -298,14 +302,14 @@ def _ties(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
 
 def _hinge_map(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     states = {
-        "hinge, first end\n(of a ring: intrados)": style.HINGE,
+        "hinge at the first end\n(intrados of an arch)": style.HINGE,
         "closed": "#f4f1ea",
-        "hinge, second end\n(of a ring: extrados)": style.THRUST,
+        "hinge at the second end\n(extrados of an arch)": style.THRUST,
         "open": "#d9a400",
     }
     time, hinge = run.array(name, "time"), run.array(name, "hinge")
     saved = solid_dem.draw_states(time, hinge, states, HINGED_FIRST, "joint", folder, f"{name}-hinges")
-    return saved, "State of the joints over time: hinge at one end or the other, closed, or open."
+    return saved, "State of each joint over time: closed, open, or with a hinge at one of its two ends."
 
 
 def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:

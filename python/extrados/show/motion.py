@@ -83,7 +83,7 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 label="smoothed (Konno and Ohmachi)",
             )
             fourier.legend(loc="lower left", fontsize=7)
-            caption += ", both unsmoothed, and smoothed by the window of Konno and Ohmachi (b = 40)"
+            caption += ". Fourier amplitude: unsmoothed (faint), and smoothed by the window of Konno and Ohmachi (b = 40)"
         found.append((style.save(fig, folder, f"{name}-spectra"), f"{caption}."))
     return found
 

@@ -259,7 +259,7 @@ def _next_step(run: Stored, lead: dict[str, Any], words: Language) -> str:
                 "A step has no verdict: {step}. Run again with a larger `budget`, or with a later end of the run.", step=r.not_done[0]
             )
         return words(
-            "Compare the reasons below. Then refine the data that decide the difference: measured friction, thickness and restraints first."
+            "Compare the reasons below. Then refine the data that decide the difference: first measure friction, thickness and restraints."
         )
     if outcome == "stands":
         if factor is not None and factor < THIN:
@@ -306,7 +306,7 @@ def _strengthening(run: Stored, lead: dict[str, Any], words: Language) -> str:
     least = r.advice.by_rocking
     if least is not None and least.required_N is not None:
         force = words.quantity(least.required_N, "N")
-        text += " " + words("To prevent collapse by rocking under this motion, the first tie requires {force}.", force=force)
+        text += " " + words("To prevent collapse by rocking under this motion, the first of these ties requires {force}.", force=force)
     return f" {text}"
 
 

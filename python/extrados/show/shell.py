@@ -114,8 +114,8 @@ def _seats(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]
         ax.set_ylabel("base shear [kN]")
         ax.legend()
         return style.save(fig, folder, f"{name}-seats{_suffix(prefix)}"), (
-            "Base shear over the displacement of each floor away from its support on a wall (greatest value "
-            "of both ends). Beyond the dashed line the floor has slid off."
+            "Base shear over the displacement of each floor away from its support on a wall (the greater "
+            "value of its two ends). Beyond the dashed line the floor has slid off."
         )
 
 
@@ -203,9 +203,9 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         right.set_ylabel("base shear over weight")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "Capacity curves: every state (thin), the envelope and its bilinear idealisation of equal area. Dots: states found by "
-            "equilibrium iterations. Dotted line: Coulomb limit of the level that slides first, which the curve does not include. "
-            "Blue-grey: variants of the assumptions. Grey: other analyses of the run."
+            "Capacity curves. Thin lines: every state. Thick lines: envelopes. Dashed lines: bilinear idealisations of equal area. "
+            "Dots: states found by equilibrium iterations. Horizontal dotted line: Coulomb limit of the level that slides first, which "
+            "the curve does not include. Blue-grey: variants of the assumptions. Grey: other analyses of the run."
         )
 
 

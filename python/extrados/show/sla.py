@@ -132,7 +132,7 @@ def _cracks_by_stage(run: Stored, name: str, folder: Path) -> list[tuple[str, st
     if not shown:
         return []
     title = _draw_cracks(run, name, folder, shown, f"{name}-stage-cracks")
-    return [(title, "Cracks on the deformed shape at the end of each stage, at the same scale.")]
+    return [(title, "Cracks on the deformed shape at the end of each stage. All stages have one scale.")]
 
 
 def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -163,8 +163,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_ylabel("load [kN]")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "Load over displacement: every state (thin; dots: by equilibrium iterations), the envelope and its bilinear idealisation. "
-            f"Grey, if present: steps of an incremental solution of the same deck.{_dropped(r)}"
+            "Load over displacement. Thin lines: every state. Thick lines: envelopes. Dashed lines: bilinear idealisations. Dots: states "
+            f"found by equilibrium iterations. Grey, if present: steps of an incremental solution of the same deck.{_dropped(r)}"
         )
 
 

@@ -125,7 +125,11 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             legend(fig, list(axes[: rows * columns]), stage.farthest)
         saved = style.save(fig, folder, f"{name}-snapshots")
     what = f"Collapse at {tilt.collapse_acceleration_g:.4f} g" if tilt is not None else "Displaced stones"
-    forces = f" Lines: forces in the contacts through their places; the longest is {stage.longest / 1e3:.3g} kN." if stage.longest else ""
+    forces = (
+        f" Lines: forces through the centres of compression of the contacts; the longest is {stage.longest / 1e3:.3g} kN."
+        if stage.longest
+        else ""
+    )
     return saved, f"{what}; colours show the displacement of each block (greatest: {stage.farthest:.3g} m).{forces}"
 
 

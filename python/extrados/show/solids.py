@@ -159,7 +159,7 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 title = f"{which} thrust at '{first.name}'\n{value / 1e3:.4g} kN"
                 states.append((title, run.array(name, f"{which}_force")[0], run.array(name, f"{which}_centre")[0], colour))
     if r.least_part_of_joints is not None:
-        title = f"most central state\nwithin {100.0 * r.least_part_of_joints:.1f} % of the contacts"
+        title = f"most central state\n(resultants in the middle {100.0 * r.least_part_of_joints:.1f} %)"
         states.insert(1, (title, run.array(name, "central_force"), run.array(name, "central_centre"), "#444444"))
     frame = scene.frame_of(stones.vertices, VIEW)
     tall = (frame[3] - frame[2]) / (frame[1] - frame[0])

@@ -238,7 +238,13 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         if isinstance(r, DemFragility) and any(r.censored):
             low, high = run.array(name, "stripe_bound_low"), run.array(name, "stripe_bound_high")
             ax.vlines(
-                level, low, high, color=style.THRUST, alpha=0.3, linewidth=6, label="collapse, with all censored runs standing or collapsed"
+                level,
+                low,
+                high,
+                color=style.THRUST,
+                alpha=0.3,
+                linewidth=6,
+                label="collapse: range if all censored runs stand or all collapse",
             )
         if "stripe_rule_least" in arrays:
             ax.fill_between(
@@ -247,10 +253,10 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 run.array(name, "stripe_rule_most"),
                 color=style.STONE,
                 linewidth=0,
-                label="collapse: range of all impact rules",
+                label="collapse: range over all impact rules",
             )
         for curve, band, color, style_, text, median, dispersion in (
-            ("curve", "curve", style.THRUST, "-", "collapse at the level", r.median, r.dispersion),
+            ("curve", "curve", style.THRUST, "-", "collapse at this level", r.median, r.dispersion),
             (
                 "first_collapse_curve",
                 "first_collapse",
@@ -278,10 +284,10 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_ylabel("probability")
         ax.set_title(f"{r.motions} motions at {len(level)} levels")
         ax.legend(loc="best")
-        points = f"Points: share of the motions that cause collapse at a level, with {100 * r.confidence:g} % Wilson intervals."
+        points = f"Points: share of the motions that cause collapse at each intensity, with {100 * r.confidence:g} % Wilson intervals."
         curves = (
-            "Curves: fitted probability of collapse at a level, with its bootstrap band; and probability of collapse at this or a lower "
-            "level (interval-censored likelihood)."
+            "Solid curve: fitted probability of collapse at an intensity, with its bootstrap band. Dash-dotted curve: fitted probability "
+            "that a motion causes collapse at this intensity or a lower one (interval-censored likelihood)."
         )
         return style.save(fig, folder, f"{name}-curve"), f"{points} {curves}" if len(grid) else points
 
@@ -304,7 +310,7 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.plot(middle, level, "-", color=style.HINGE, linewidth=2.0, label="median of the motions")
         i, j = np.nonzero(risen)
         if len(i):
-            ax.plot(ratio[i, j], level[j], "o", color=style.GROUND, markersize=3, label="survival at a level above one that overturns")
+            ax.plot(ratio[i, j], level[j], "o", color=style.GROUND, markersize=3, label="no overturning above a level that overturns")
         ax.axvline(1.0, color=style.THRUST, linewidth=0.9)
         ax.axvline(place, color=style.EDGE, linewidth=0.6, linestyle=":")
         ax.set_xlim(-0.02, place + 0.03)
@@ -317,7 +323,8 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         style.legend_below(fig, ax)
         if "grid" not in run.arrays[name]:
             return style.save(fig, folder, f"{name}-incremental"), (
-                f"Greatest displacements of {min(len(ratio), HAIRS)} motions over the size of the structure, with the percentiles of all {r.motions}."
+                f"Greatest displacements under {min(len(ratio), HAIRS)} motions, plotted over the size of the structure, with the "
+                f"percentiles of all {r.motions} motions."
             )
         return style.save(fig, folder, f"{name}-incremental"), (
             f"Incremental curves of {min(len(ratio), HAIRS)} motions, with the percentiles of all {r.motions} motions. "
@@ -362,7 +369,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
             (
                 style.save(fig, folder, f"{name}-motion"),
                 (
-                    f"The motion that supplies most energy, with accelerations up to {r.cap_g:.3f} g, and the response to "
+                    f"The motion that supplies most energy, with accelerations up to the cap of {r.cap_g:.3f} g, and the response to "
                     "this motion (Fig. 6-2)."
                 ),
             )
@@ -382,7 +389,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         found.append(
             (
                 style.save(fig, folder, f"{name}-least-cap"),
-                ("Lowest limit of the acceleration at which the motion that supplies most energy overturns the block (Fig. 6-3)."),
+                ("Least cap of the ground acceleration with which the motion that supplies most energy increases the rotation (Fig. 6-3)."),
             )
         )
     with style.figure(8.0, 3.6, columns=2, sharey=True) as (fig, (left, right)):
@@ -390,7 +397,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         for value, row in zip(run.array(name, "impulse_period_ratio"), run.array(name, "energy_by_period"), strict=True):
             left.plot(s, row, label=f"T_p = {value:g} T_n")
         for value, row in zip(run.array(name, "impulse_rotation"), run.array(name, "energy_by_rotation"), strict=True):
-            right.plot(s, row, label=f"initial rotation {value:g} of the critical rotation")
+            right.plot(s, row, label=f"initial / critical rotation = {value:g}")
         left.set_ylabel("energy supplied / energy at the start")
         for ax in (left, right):
             ax.axhline(0.0, color=style.EDGE, linewidth=0.8)
@@ -401,7 +408,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
                 style.save(fig, folder, f"{name}-impulse"),
                 (
                     f"Energy that one sine impulse of {r.impulse_amplitude_g:.3f} g adds to free rocking (Fig. 6-4). a: "
-                    "from a rotation of a quarter of the critical rotation. b: with T_p = T_n/2."
+                    "several periods T_p, from a quarter of the critical rotation. b: several initial rotations, with T_p = T_n/2."
                 ),
             )
         )

@@ -50,7 +50,7 @@ FACTORS = {
 SERVICE = {
     "live": "live load, permissible limit state",
     "strength_share": "permissible stress / compressive strength",
-    "passive_share": "passive pressure, permissible limit state / collapse",
+    "passive_share": "passive pressure in the permissible limit state / at collapse",
 }
 
 

@@ -33,7 +33,7 @@ Text = Annotated[str, Field(max_length=200)]
 class ReportTable(Table):
     """The keys of report.toml; entries of the title block that the deck does not give."""
 
-    language: Literal["en", "it", "es", "fr", "de"] | None = key(None, "language of the report; default: that of the deck")
+    language: Literal["en", "it", "es", "fr", "de"] | None = key(None, "language of the report; default: language of the deck")
     project: Text = key("", "name or number of the project")
     client: Text = key("", "client")
     office: Text = key("", "office that issues the report")

@@ -30,7 +30,7 @@ const TEXTS = [
   "Width at the top",
   "Clear span",
   "Rise of the intrados",
-  "Distance of the outer faces from the axis",
+  "Distance of the outer faces of the buttresses from the axis",
   "Left edge of the opening",
   "Right edge of the opening",
   "Lower edge of the opening",

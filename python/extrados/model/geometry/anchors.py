@@ -74,7 +74,7 @@ def only_stone(
     place = ", ".join(f"{axis} = {value:.4g}" for axis, value in zip("xyz", point, strict=False)) + " m"
     if not found:
         near = names[int(np.linalg.norm(centroid - point, axis=1).argmin())]
-        raise BadGeometry(f"{what}: no block is at {place}. {outside}; '{near}' is the nearest", (*key, end))
+        raise BadGeometry(f"{what}: no block is at {place}; the nearest block is '{near}'. {outside}", (*key, end))
     if len(found) > 1:
         said = ", ".join(f"'{names[i]}'" for i in found)
         raise BadGeometry(f"{what}: {place} lies between {said}; {between}", (*key, end))

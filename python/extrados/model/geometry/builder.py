@@ -121,7 +121,7 @@ def springing_path(
     slack = 1e-9 * outer
     if not low - slack <= reach <= high + slack:
         raise BadGeometry(
-            f"{part}: the distance from the face to the centre line of the arch is {reach:.4g} m. Give a distance "
+            f"{part}: the distance from the face to the vertical axis of the arch is {reach:.4g} m. Give a distance "
             f"between {low:.4g} m (intrados at the springing) and {high:.4g} m (radius of the intrados)"
         )
     if outer * sin(half) < reach - slack:

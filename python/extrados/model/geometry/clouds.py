@@ -43,8 +43,8 @@ class Fit:
     def told(self) -> str:
         """The misfit in words."""
         return (
-            f"{self.name}: {self.used} points within {1e3 * self.most:.3g} mm of the fitted surface (95 %; "
-            f"root mean square {1e3 * self.rms:.3g} mm), {self.dropped} stray points not used"
+            f"{self.name}: 95 % of {self.used} points are within {1e3 * self.most:.3g} mm of the fitted surface "
+            f"(root mean square distance {1e3 * self.rms:.3g} mm). {self.dropped} stray points were not used"
         )
 
 
@@ -112,7 +112,7 @@ def parse_cloud(content: bytes, sort: str) -> dict[str, np.ndarray]:
     if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
         raise Unreadable("the file has no points with three finite coordinates")
     if len(points) > MOST_POINTS:
-        raise Unreadable(f"the file has more than {MOST_POINTS} points")
+        raise Unreadable(f"the file has more than {MOST_POINTS} points: reduce their number")
     return {"points": points}
 
 
@@ -240,8 +240,8 @@ def _refuse_other_shapes(fits: Sequence[Fit], thickness: float, given: float | N
     cure = "If the points show one face only, give `thickness`" if given is None else "If the points show both faces, remove `thickness`"
     raise BadGeometry(
         f"the points lie up to {1000.0 * worst.most:.3g} mm (95th percentile) from the fitted {worst.name}, "
-        f"which is more than a quarter of the thickness of {1000.0 * thickness:.3g} mm. {cure}; otherwise "
-        f"the points do not form {shape}: divide them, or give the blocks as solids",
+        f"which is more than a quarter of the thickness of {1000.0 * thickness:.3g} mm. {cure}. Otherwise "
+        f"the points do not form {shape}: divide the points, or give the blocks as solids",
         ("structure", "scan", "thickness"),
     )
 

@@ -222,7 +222,7 @@ def _document(data: bytes, name: str) -> Any:
 def _unit(name: str, code: int) -> str:
     if code not in INSUNITS:
         what = "the drawing has no unit ($INSUNITS = 0)" if code == 0 else f"the drawing has an unknown unit ($INSUNITS = {code})"
-        raise BadGeometry(f'{name}: {what}; give it with  unit = "mm"  (one of {", ".join(UNITS)})')
+        raise BadGeometry(f'{name}: {what}. Give the key `unit`, such as unit = "mm" (expected one of {", ".join(UNITS)})')
     return INSUNITS[code]
 
 

@@ -33,8 +33,8 @@ def told(gaps: np.ndarray, mortar: float, grown: float) -> tuple[str, ...]:
     return (
         (
             f"{len(gaps)} joints that are drawn as gaps of {(most if least == most else f'{least} to {most}')} mm were closed "
-            f"(`mortar_gap` {1000.0 * mortar:.3g} mm): the faces on both sides were moved to the middle of the mortar. The volume of "
-            f"the blocks increased by {100.0 * (grown - 1.0):.3g} %, with the density of the blocks"
+            f"(`mortar_gap` {1000.0 * mortar:.3g} mm): the faces on both sides were moved to the middle of the mortar. The "
+            f"volume of the blocks increased by {100.0 * (grown - 1.0):.3g} %; their density is unchanged"
         ),
     )
 

@@ -318,7 +318,7 @@ class AisledVault(PresetStructure):
     word: ClassVar = "church section"
     kind: Literal["aisled-vault"]
     preset: Literal["vezelay-like", "colombier-like", "colombier-tall"] | None = key(
-        None, "estimated dimensions of a church in the manner of thesis 3.5; keys that are given replace its values"
+        None, "estimated dimensions of a church similar to those in thesis 3.5; keys in the deck replace single dimensions"
     )
     radius: Length = key(about="radius of the centre line of the nave vault", gt=0)
     thickness: Length = key(about="thickness of the nave vault", gt=0)

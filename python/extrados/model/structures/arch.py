@@ -98,8 +98,8 @@ class Arch(Structure):
     depth: Length = key(1.0, "depth out of plane", gt=0)
     skew: Angle = key(
         0.0,
-        "for an arch in space: skew angle in plan between its faces and a square section; coursing "
-        "joints remain parallel to the springings",
+        "for an arch in space: skew angle in plan between the faces of the arch and a section perpendicular to the "
+        "springings; coursing joints remain parallel to the springings",
         gt=-75,
         lt=75,
     )

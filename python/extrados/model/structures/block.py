@@ -146,7 +146,9 @@ class Block(Structure):
     inertia: Inertia | None = key(None, "moment of inertia of the body about its centre of mass", gt=0)
     centre_height: Length | None = key(None, "height of the centre of mass of the body above its toes", gt=0)
     toe_right: Length | None = key(None, "horizontal distance of the right toe from the centre of mass", gt=0)
-    toe_left: Length | None = key(None, "horizontal distance of the left toe from the centre of mass; default: that of the right toe", gt=0)
+    toe_left: Length | None = key(
+        None, "horizontal distance of the left toe from the centre of mass; default: the value of `toe_right`", gt=0
+    )
     head_mass: Mass = key(0.0, "for a rectangular pier whose head rotates freely: mass that moves with the middle of the head", ge=0)
     base_slope: Angle = key(0.0, "slope of the ground below the block; positive if it rises to the right", gt=-60, lt=60)
 

@@ -157,8 +157,8 @@ class Blocks(Structure):
     )
     section: Plane | None = key(
         None,
-        "plane of a file in space that is the section; the second letter is the vertical axis. Default: "
-        "for DXF, and for OBJ and STL without volume, the plane that contains everything. With this "
+        "for a file in space: plane that is read as the section; its second letter is the vertical axis. Default for "
+        "DXF, and for OBJ and STL without volume: the plane that contains all lines and faces. With this "
         "key, solids of OBJ and STL that are prisms perpendicular to the plane are read as a section",
     )
     layers: list[str] | None = key(None, "layers of the drawing that are read as blocks; default: all layers", max_length=200)
@@ -186,8 +186,8 @@ class Blocks(Structure):
     contact_tolerance: Length = key(
         1e-4,
         "tolerance of contacts: faces that are closer than this value touch each other; overlaps below this value are ignored; contacts "
-        "of solids that are narrower carry no force. `check` reports the tolerance that would close each gap. The default for solids is "
-        "at most 1/10000 of their size",
+        "of solids with a width below this value carry no force. `check` reports the tolerance that would close each gap. The default for "
+        "solids is at most 1/10000 of their size",
         gt=0,
         le=0.1,
     )
@@ -198,7 +198,7 @@ class Blocks(Structure):
         gt=0,
         le=0.1,
     )
-    depth: Length | None = key(None, "depth out of plane; default: that of the file, otherwise 1 m", gt=0)
+    depth: Length | None = key(None, "depth out of plane; default: depth that the file gives, otherwise 1 m", gt=0)
     scan: Scan | None = key(None, "courses into which a scanned wall or barrel (a point cloud) is divided, and their blocks")
     fill: Fill | None = key(None, "soil over the blocks of a bridge, up to a level above the highest block")
     surfacing: Surfacing | None = key(None, "road surface or ballast on the fill")

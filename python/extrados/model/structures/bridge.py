@@ -111,7 +111,7 @@ class Backing(Table):
     """Masonry over the haunches, one body over each pier and at each end."""
 
     height: Length = key(about="height of the horizontal top of the backing above the springings", gt=0)
-    density: Density | None = key(None, "density; default that of [material]", gt=0, le=30000)
+    density: Density | None = key(None, "density; default: density of [material]", gt=0, le=30000)
 
 
 def intrados(span: Span) -> tuple[np.ndarray, np.ndarray]:
@@ -422,7 +422,7 @@ class Bridge(Structure):
     fill: Fill | None = key(None, "soil over the arches")
     surfacing: Surfacing | None = key(None, "road surface or ballast on the fill")
     spandrels: Spandrels | None = key(None, "spandrel walls at the edges of the arches, of which only the weight acts")
-    depth: Length = key(1.0, "width across the bridge that acts as one, for instance between the spandrel walls", gt=0)
+    depth: Length = key(1.0, "width of the bridge that acts as one body, for instance the width between the spandrel walls", gt=0)
 
     @model_validator(mode="after")
     def _piers(self) -> "Bridge":

@@ -45,7 +45,7 @@ class Spandrels(Table):
     """Spandrel walls on both edges of the arches, within their depth, up to the formation: weight in place of fill."""
 
     thickness: Length = key(about="thickness of each of the two spandrel walls", gt=0)
-    density: Density | None = key(None, "density; default that of [material]", gt=0, le=30000)
+    density: Density | None = key(None, "density; default: density of [material]", gt=0, le=30000)
 
 
 def refuse_without_fill(fill: Fill | None, surfacing: Surfacing | None, spandrels: Spandrels | None, depth: float | None) -> None:

@@ -77,7 +77,7 @@ class Column(Structure):
     sides: int = key(24, "for round drums: number of flat facets, or of flutes, around the circumference", ge=3, le=96)
     flute_depth: Length = key(0.0, "for round drums: depth of the flutes at the base; two flat facets form each flute", ge=0)
     dowels: Annotated[Force, Field(gt=0)] | Literal["unbroken"] | None = key(
-        None, 'shear strength of each dowel (on the axis, between two drums), or "unbroken"'
+        None, 'shear strength of each dowel (on the axis, between two drums); "unbroken": dowels never break'
     )
     dowel_reach: Length | None = key(
         None,

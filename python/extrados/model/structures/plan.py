@@ -47,7 +47,8 @@ class WallOpening(Table):
     z: Range = key(about="[from, to] above the floor of the storey")
     lintel: Lintel | None = key(None, "beam over it")
     through: bool = key(
-        False, "whether the opening extends through the floors above; `z` is then measured from the floor of `storey` up to its head"
+        False,
+        "whether the opening extends through the floors above; sill and head in `z` are then both heights above the floor of `storey`",
     )
 
     @model_validator(mode="after")
@@ -126,7 +127,9 @@ class Corner(Table):
         "second wall have a lower strength; joint: a joint of [joints] between the walls, which opens, "
         "slides up and down, and crushes; open: connected only by floors"
     )
-    strength: float = key(0.5, "for a weak corner: tensile strength of the corner, divided by that of the wall", gt=0, le=1)
+    strength: float = key(
+        0.5, "for a weak corner: tensile strength at the corner, divided by the tensile strength of the second wall", gt=0, le=1
+    )
 
     @model_validator(mode="after")
     def _two(self) -> "Corner":
@@ -201,7 +204,9 @@ class StoreyFloor(Table):
         if self.roof is not None and not self.load > 0.0:
             raise ValueError(f"a roof of {self.roof} requires `load`, the weight per area of its slopes, above 0")
         if self.roof == "rafters" and self.kind == "joists":
-            raise ValueError("joists tie the two walls: give roof = 'trusses', or another kind of floor")
+            raise ValueError(
+                "roof = 'rafters' pushes the two walls apart, but joists tie them: give roof = 'trusses', or another kind of floor"
+            )
         if self.seat is not None and (self.kind == "none" or self.roof is not None or not self.load > 0.0 or not self.bears_on):
             raise ValueError("seat: expected a level floor of kind 'joists', 'flexible' or 'rigid', with `load` above 0 and `bears_on`")
         if self.walls is not None and (twice := [name for name, n in Counter(self.walls).items() if n > 1]):
@@ -240,7 +245,7 @@ class Rod(Table):
 class Prop(Table):
     """The top of a storey of a wall that cannot move across its plane: what holds it does not move."""
 
-    wall: str = key(about="name of the wall, along x or y")
+    wall: str = key(about="name of the wall, which must run along x or y")
     storey: int = key(about="on top of this storey", ge=1)
 
 
@@ -284,8 +289,8 @@ class RingBeam(Table):
     walls: list[str] = key([], "names of the walls; default: all walls of the storey", max_length=200)
     reinforcement: Reinforcement | None = key(
         None,
-        "bars of the beam. In frames, they give the plastic moment of its hinges and its strength as a tie; the material of the beam "
-        "then requires `compressive_strength`. Default: the beam remains elastic",
+        "bars of the beam. In frames, the bars limit the tension of the beam and give it plastic hinges; its material then requires "
+        "`compressive_strength`. Default: the beam remains elastic",
     )
 
     @model_validator(mode="after")
@@ -357,7 +362,7 @@ class Plan(Structure):
                     "the top has z = 0 in the next storey"
                 )
             if (first := heights.setdefault(round(self.bed_height(bed), 9), k)) != k:
-                raise ValueError(f"beds[{k}]: bed {first + 1} has the same height; give all walls of the joint there")
+                raise ValueError(f"beds[{k}]: bed {first + 1} has the same height: name all walls of the joint in one of the two tables")
         names_of_joints = self.joint_names
         for k, name in enumerate(names_of_joints):
             if name in names_of_joints[:k]:
@@ -700,7 +705,7 @@ def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
         (x0, y0), (x1, y1) = wall.start, wall.end
         raise BadGeometry(
             f"{what}: the walls of the storey do not form a simple ring: wall '{wall.name}' from ({x0:g}, {y0:g}) to ({x1:g}, "
-            f"{y1:g}) m meets {met} of them, expected two. Give the walls around the floor by `walls`"
+            f"{y1:g}) m meets {met} of these walls, expected two. Give the walls around the floor by `walls`"
         )
     ring = [walls[0], meets[walls[0]][0]]
     while len(ring) < len(walls):

@@ -23,7 +23,7 @@ class Stack(Structure):
     lower_height: Length = key(about="height of the lower block", gt=0)
     upper_width: Length = key(about="width of the upper block", gt=0)
     upper_height: Length = key(about="height of the upper block", gt=0)
-    upper_density: Density | None = key(None, "density of the upper block; default: that of [material]", gt=0)
+    upper_density: Density | None = key(None, "density of the upper block; default: density of [material]", gt=0)
     depth: Length = key(1.0, "depth out of plane", gt=0)
 
     def assembly(self, density: float, folder: Path) -> Assembly:

@@ -95,8 +95,8 @@ class Vault(PresetStructure):
     kind: Literal["vault"]
     preset: Literal["dejong-a", "dejong-b"] | None = key(
         None,
-        "all dimensions of one interpretation of the vault of thesis 3.4, inferred from its results; "
-        "keys that are given replace its values",
+        "dimensions of the vault in thesis 3.4, inferred from the results there (two interpretations); "
+        "keys in the deck replace single dimensions",
     )
     radius: Length = key(about="radius of the centre line of the vault", gt=0)
     thickness: Length = key(about="thickness of the vault", gt=0)

@@ -25,9 +25,9 @@ class Region(Placed):
     linear: bool = key(False, "the elements stay linear")
     thickness: Length | None = key(None, "thickness of the region", gt=0)
     gauss: list[Annotated[int, Field(ge=1, le=4)]] | None = key(
-        None, "number of Gauss points [along, across] of the quadrilaterals", min_length=2, max_length=2
+        None, "numbers of Gauss points of each quadrilateral [along its first side, across this side]", min_length=2, max_length=2
     )
-    crack_normal: Angle | None = key(None, "the only direction that the crack normal can have, as an angle from x", ge=-180, le=180)
+    crack_normal: Angle | None = key(None, "angle from x to the crack normal, if cracks can have this direction only", ge=-180, le=180)
 
     def holds(self, points: np.ndarray) -> np.ndarray:
         """Which of the points (k, 2) [m] lie within it."""
@@ -139,14 +139,15 @@ class Panel(Laid, MeshedWall):
         for i, region in enumerate(self.regions, start=1):
             if region.thickness not in (None, self.thickness):
                 raise NoView(
-                    f"region {i} of the panel has its own thickness, but all blocks have the same thickness",
+                    f"region {i} of the panel has its own thickness, but all blocks must have the same thickness: remove the "
+                    "thickness of the region",
                     ("structure", "regions", i - 1, "thickness"),
                 )
             if region.material is None:
                 continue
             if density == 0.0:
                 raise NoView(
-                    f"region {i} of the panel has its own material, but [material] has no density",
+                    f"region {i} of the panel has its own material, but [material] has no density: give [material] a density",
                     ("structure", "regions", i - 1, "material"),
                 )
             ratio[region.holds(made.centroid)] = densities[region.material] / density

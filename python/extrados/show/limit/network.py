@@ -44,7 +44,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
 def _value(r: ThrustNetwork, aim: str) -> str:
     """The value of a network in words."""
     if aim == "central":
-        return f"within {100.0 * r.least_part_of_depth:.1f} % of the depth"
+        return f"in the middle {100.0 * r.least_part_of_depth:.1f} % of the depth"
     if aim == "horizontal":
         return f"{r.horizontal_load_g:.3g} times the weight"
     return f"{((r.least_thrust_N if aim == 'least' else r.greatest_thrust_N) or 0.0) / 1e3:.4g} kN"

@@ -123,7 +123,7 @@ def draw_survey(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         else:
             ax.plot(gamma[order], (np.arange(len(order)) + 1.0) / len(order), color=style.THRUST)
             ax.set_xlabel("collapse acceleration [g]")
-            ax.set_ylabel("share of sections with at most\nthis acceleration")
+            ax.set_ylabel("share of sections with a collapse\nacceleration of at most this value")
         return [(style.save(fig, folder, name), "Collapse acceleration of the sections that carry their self-weight.")]
 
 
@@ -146,7 +146,7 @@ def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, 
             share,
             where="post",
             color=style.THRUST,
-            label=f"{r.count} random geometries, each point within {1e3 * r.deviation_m:.3g} mm",
+            label=f"{r.count} random geometries, corners displaced by up to {1e3 * r.deviation_m:.3g} mm",
         )
         given = r.given_collapse_acceleration_g
         ax.axvline(given, color=style.HINGE, linestyle="--", label=f"geometry of the deck: {given:.4f} g")

@@ -139,8 +139,8 @@ class _Maker(Division):
             if weak:
                 self.remarks.append(
                     f"The tension of ring beams is not limited, because {', '.join(f'[materials.{name}]' for name in sorted(weak))} "
-                    "has no `tensile_strength`: spandrels beside them have the full strut against a tie. Give the strength, or check the "
-                    "reinforcement."
+                    "has no `tensile_strength`. Then only `horizontal_strength` limits the strut in spandrels beside a ring beam. Give "
+                    "`tensile_strength`, or check the reinforcement."
                 )
 
     def _traces(self) -> list[Trace]:
@@ -310,7 +310,7 @@ class _Maker(Division):
         rows = []
         for w, _, s in around:
             if (w, level) not in self.along:
-                raise BadGeometry(f"floor on storey {level}: wall '{plan.walls[w].name}' has no masonry there")
+                raise BadGeometry(f"floor on storey {level}: wall '{plan.walls[w].name}' has no masonry at the level of the floor")
             rows.append(self._vector(w, s, level))
         outline = plan.outline(around)
         area = signed_area(outline)
@@ -661,5 +661,5 @@ def _law(wanted: str, cohesion: float, tension: float) -> str:
     if wanted == "least" and not tension > 0.0:
         return "mohr-coulomb"
     if not tension > 0.0:
-        raise BadGeometry(f"{wanted} needs diagonal_strength", ("analysis", "frame", "shear"))
+        raise BadGeometry(f'shear = "{wanted}" requires `diagonal_strength`', ("analysis", "frame", "shear"))
     return "turnsek-cacovic" if wanted == "turnsek-cacovic" or not cohesion > 0.0 else wanted

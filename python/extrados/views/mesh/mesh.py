@@ -212,9 +212,9 @@ def build_mesh(
 ) -> Mesh:
     """Split the elements of a wall into groups by its regions; unused nodes are dropped, bad elements refused."""
     if options.joint_thickness is not None:
-        raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: remove `joint_thickness`")
+        raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: remove `joint_thickness` of the mesh")
     if options.joints is not None:
-        raise BadGeometry(f"a structure of kind '{wall.kind}' has no blocks: remove joints")
+        raise BadGeometry(f"a structure of kind '{wall.kind}' has no blocks: remove `joints` of the mesh")
     if not len(connect):
         raise BadGeometry("the mesh has no elements")
     used, renumbered = np.unique(connect, return_inverse=True)
@@ -225,7 +225,7 @@ def build_mesh(
     if len(bad):
         c = xy[connect[bad[0], : corner_count(kind)]].mean(axis=0)
         what = "inverted" if area[bad[0]] < -1e-9 * scale else "without area"
-        raise BadGeometry(f"element {bad[0] + 1} at x {c[0]:g} m, y {c[1]:g} m is {what}; {len(bad)} such elements")
+        raise BadGeometry(f"element {bad[0] + 1} at x {c[0]:g} m, y {c[1]:g} m is {what}; the mesh has {len(bad)} such elements")
     same = np.sort(connect, axis=1)
     _, counts = np.unique(same, axis=0, return_counts=True)
     if counts.max() > 1:

@@ -34,7 +34,7 @@ class MeshOptions(Table):
     )
     joint_thickness: Length | None = key(
         None,
-        "thickness of the row of elements along each joint between blocks; default: 1/25 of the size, and at most 1/5 of the shortest "
+        "thickness of the row of elements along each joint between blocks; default: 1/25 of `size`, and at most 1/5 of the shortest "
         "element along a joint. The default stiffness of interfaces is that of the block material with this thickness",
         gt=0,
     )

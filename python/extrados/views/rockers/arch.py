@@ -161,8 +161,8 @@ class ArchModel:
         value = self.impacts.by_rule[self.rule]
         if value < 0.0:
             raise NoView(
-                f'the impact rule "{self.rule}" gives c_v = {value:.3f}, for which the mirrored mechanism would have '
-                f'to close further. With restitution = "inelastic", c_v is {self.impacts.inelastic:.3f}',
+                f'the impact rule "{self.rule}" gives c_v = {value:.3f}: the mechanism towards the opposite side would '
+                f'not open after the impact. Give restitution = "inelastic" (c_v = {self.impacts.inelastic:.3f})',
                 ("joints", "restitution"),
             )
         return min(value, 1.0)
@@ -187,8 +187,8 @@ class ArchModel:
         if (kept := self.kept_by_elements) is not None:
             return [
                 (
-                    f"a plastic impact at all joints gives this stocky arch a coefficient of restitution of {self.restitution:.3f}. Discrete elements give up "
-                    f"to {kept:.3f} and collapse earlier: use `dem`"
+                    f"for this stocky arch, the impact rule gives a coefficient of restitution of {self.restitution:.3f}. "
+                    f"Discrete elements give up to {kept:.3f}, and the arch collapses earlier: use `dem`"
                 )
             ]
         if self.rule == "thesis" and impacts.thesis > 1.0:

@@ -222,8 +222,8 @@ class MechanismModel:
             found.append(
                 f"after an impact, the mechanism towards the opposite side keeps {100 * max(kept):.0f} % of the "
                 f"kinetic energy. If hinges could open at all joints, {100 * max(self.energy_kept):.0f} % would "
-                "remain. The section then moves differently, and rotations after an impact are underestimated "
-                '(restitution = "inelastic" keeps all of this energy)'
+                "remain. This model then underestimates the rotations after an impact. "
+                'Compare the result with restitution = "inelastic", which keeps all of this energy'
             )
         for side, one, table, (_, mechanism) in zip(SIDES, self.linkages, self.tables, self.collapse, strict=True):
             closing = self._closing(one, table, mechanism)

@@ -24,5 +24,5 @@ class ShellOptions(Table):
     def _bends(self) -> "ShellOptions":
         least = 2 if self.through == "gauss" else 3
         if self.layers < least:
-            raise ValueError(f"layers is {self.layers}: bending requires at least {least} points of the {self.through} rule")
+            raise ValueError(f"`layers` is {self.layers}, but bending requires at least {least} points of the {self.through} rule")
         return self

@@ -69,16 +69,16 @@ def ring_of_floor(plan: Plan, floor: StoreyFloor, grids: list[WallGrid], number:
     for w, start, end in walls:
         own, s = level_nodes(plan, floor.storey, grids[w], number)
         if not len(own):
-            raise BadGeometry(f"{what}: wall '{plan.walls[w].name}' has no masonry there")
+            raise BadGeometry(f"{what}: wall '{plan.walls[w].name}' has no masonry at the level of the floor")
         inside = (s >= min(start, end) - MEETS) & (s <= max(start, end) + MEETS)
         order = np.argsort(s[inside] if end > start else -s[inside], kind="stable")
         nodes += own[inside][order].tolist()
     ring = [n for n, before in zip(nodes, nodes[-1:] + nodes[:-1], strict=True) if np.linalg.norm(xyz[n] - xyz[before]) > MEETS]
     if len(ring) < 3 or len(set(ring)) < len(ring):
         twice = next((n for k, n in enumerate(ring) if n in ring[:k]), None)
-        at = "" if twice is None else f" twice at ({xyz[twice, 0]:.3g}, {xyz[twice, 1]:.3g}) m"
+        fault = "encloses no area" if twice is None else f"passes twice through ({xyz[twice, 0]:.3g}, {xyz[twice, 1]:.3g}) m"
         raise BadGeometry(
-            f"{what}: the walls {', '.join(plan.walls[w].name for w, _, _ in walls)} do not form a simple ring: it passes{at or ' no area'}. "
+            f"{what}: the walls {', '.join(plan.walls[w].name for w, _, _ in walls)} do not form a simple ring: this ring {fault}. "
             "Name the walls around the floor in order by `walls`"
         )
     x, y = xyz[ring, 0], xyz[ring, 1]
@@ -189,7 +189,9 @@ def _shares(plan: Plan, floor: StoreyFloor, part: Part, grids: list[WallGrid], n
     half = np.diff(s) / 2.0
     np.add.at(shares, own, np.append(half, 0.0) + np.append(0.0, half))
     if not shares.sum() > 0.0:
-        raise BadGeometry(f"floor on storey {floor.storey}: wall '{plan.walls[part[0]].name}' has no masonry there to carry its load")
+        raise BadGeometry(
+            f"floor on storey {floor.storey}: wall '{plan.walls[part[0]].name}' has no masonry at the level of the floor to carry its load"
+        )
     return shares
 
 

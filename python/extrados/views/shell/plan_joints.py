@@ -34,7 +34,9 @@ def make_joints(
         row = int(np.abs(grids[0].z - plan.bed_height(bed)).argmin())
         on = {w: _cells_above(grids[w], row, number) for w in range(len(grids))}
         if not any(len(on[w]) for w in walls):
-            raise BadGeometry(f"at {plan.bed_height(bed):g} m there is no wall", ("structure", "beds", k))
+            raise BadGeometry(
+                f"bed joint at {plan.bed_height(bed):g} m: no wall of the joint has masonry above this height", ("structure", "beds", k)
+            )
         stay = {n for w in on if w not in walls for n in on[w].ravel().tolist()}  # there a wall passes through the joint
         for n in sorted({n for w in walls for n in on[w].ravel().tolist()} - stay):
             copies[row, n] = nodes + len(copies)

@@ -328,7 +328,7 @@ def _refuse(names: Sequence[str], met: Touching, a: np.ndarray, b: np.ndarray, c
     narrow = _widest(met.slivers)
     for k in lonely[:MOST_TOLD]:
         told = (
-            (f"; the nearest face is {1000.0 * near[k]:.3g} mm away: `contact_tolerance`, or `mortar_gap` for joints of mortar")
+            (f"; the nearest face is {1000.0 * near[k]:.3g} mm away (give a larger `contact_tolerance`, or `mortar_gap` for mortar)")
             if k in near
             else ""
         )
@@ -355,7 +355,7 @@ def _nearly(names: Sequence[str], gaps: Sequence[tuple[int, int, float]]) -> tup
     return (
         (
             f"{len(gaps)} pairs of blocks have faces that nearly touch but form no contact. They are at most {1000.0 * gap:.3g} mm "
-            f"apart ({names[one]} and {other}); `contact_tolerance` closes them, or `mortar_gap` if they are joints of mortar"
+            f"apart ({names[one]} and {other}). To close these gaps, give a larger `contact_tolerance`, or `mortar_gap` for mortar joints"
         ),
     )
 
