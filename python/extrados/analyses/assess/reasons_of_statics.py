@@ -47,8 +47,8 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
     needed = facts.needed_s(amplitude)
     told = f"{amplitude:.3g} g" if factor == 1.0 else f"{amplitude:.3g} g (the motion times {factor:.3g})"
     text = (
-        f"Static analysis applies the peak of {told} as a constant horizontal acceleration; the motion exceeds the {capacity:.3g} g of "
-        f"{facts.rows[weakest].label} {count} time{'s' if count != 1 else ''}, each time for {longest:.3g} s at most"
+        f"Static analysis applies the peak of {told} as a constant horizontal acceleration. The motion exceeds the capacity of "
+        f"{capacity:.3g} g by {facts.rows[weakest].label} {count} time{'s' if count != 1 else ''}, each time for {longest:.3g} s at most"
     )
     numbers = {"static_capacity": capacity, "peak": amplitude, "excursions": float(count), "longest_s": longest, "needed_s": needed}
     if needed is not None and longest < needed:

@@ -476,7 +476,9 @@ def _without_dilatancy(limit: LimitAnalysis, sense: int) -> tuple[float, Mechani
     assert limit.friction is not None  # blocks that cannot slide have no such state
     proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, limit.strength)
     if not proof.holds(state.gamma):
-        raise NoAnswer(f"the state found is not certified (difference between forces and mechanism {proof.zero_gap:.1e} g)")
+        raise NoAnswer(
+            f"the state found is not certified (the loads from its forces and from its mechanism differ by {proof.zero_gap:.1e} g)"
+        )
     return least, mechanism
 
 

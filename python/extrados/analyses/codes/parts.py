@@ -224,7 +224,9 @@ def _nz_wall(part: Part, spectrum: Callable[[float, float], float] | None, state
     elif part.load < 0.0 or part.height is None or part.thickness is None:
         barred = "the dimensions of the wall are not known"
     elif part.shaken:
-        barred = "the action is the motion of the floor below. The floor above moves otherwise, so the demand is not known: give a spectrum"
+        barred = (
+            "the action is the motion of the floor below. The floor above moves differently, so the demand is not known: give a spectrum"
+        )
     else:
         found = one_way(part.height, part.thickness, part.weight, part.load)
         capacity = USABLE_WALL * found.instability

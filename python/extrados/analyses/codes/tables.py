@@ -206,7 +206,7 @@ class LocalMechanism(BuildingAnalysis):
     mechanism: Literal[
         "facade", "corner", "gable", "parapet", "chimney", "wall", "tower", "vertical-bending", "horizontal-bending", "building"
     ] = key(
-        about="kind of mechanism. Of one wall: facade, corner of two walls, gable, parapet or chimney on a "
+        about="kind of mechanism. For a part of a building: facade, corner of two walls, gable, parapet or chimney on a "
         "building, free-standing wall, tower as one body, vertical bending between floors, horizontal "
         "bending between side walls. `building`: the collapse mechanism of the [structure] of the deck "
         "(triumphal arches, bridges, vaults), or the walls of a building in plan"
@@ -289,7 +289,7 @@ class LocalMechanism(BuildingAnalysis):
     @model_validator(mode="after")
     def _one_building(self) -> "LocalMechanism":
         if self.modes and (given := sorted({"building_period", "storeys"} & self.model_fields_set)):
-            raise ValueError(f"{given[0]}: the key `modes` already gives this value: remove this key")
+            raise ValueError(f"{given[0]}: remove this key, because the key `modes` already gives its value")
         return self
 
     @model_validator(mode="after")

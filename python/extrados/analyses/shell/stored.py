@@ -27,8 +27,10 @@ def store_mesh(result: Result, model: ShellModel) -> None:
             np.array([int(part.bends)]), ("one",), "", f"whether {part.name} resists bending; a floor does not", "bends"
         )
     walls = np.array([[*w.origin, *w.along, w.length] for w in mesh.walls]).reshape(-1, 5)
-    result.arrays["wall"] = Array(walls, ("walls", "wall_row"), "m", "origin and direction in plan, and length")
-    result.arrays["level"] = Array(mesh.levels, ("levels",), "m", "heights of the ground and the storeys")
+    result.arrays["wall"] = Array(
+        walls, ("walls", "wall_row"), "m", "of each wall: x and y of its start, direction in plan (unit vector), and length"
+    )
+    result.arrays["level"] = Array(mesh.levels, ("levels",), "m", "heights of the ground and of the top of each storey")
     if not mesh.walls:
         for name, values in place_axes(model).items():
             unit = "m" if name == "xyz" else ""

@@ -230,7 +230,7 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
             table,
             ("aspect", "initial_ratio"),
             "",
-            "lowest limit of the acceleration at which the rotation grows, divided by the uplift acceleration",
+            "least cap of the ground acceleration with which the rotation grows, divided by the uplift acceleration",
         ),
         "impulse_period_ratio": Array(np.array(IMPULSE_PERIODS), ("impulse_period_ratio",), "", "T_p/T_n"),
         "impulse_rotation": Array(
@@ -256,7 +256,7 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
     }
     if least is not None:
         result.answer += (
-            f" From this start, any limit of the acceleration above {least:.3f} g ({least / model.uplift:.2f} times "
+            f" From this start, any cap of the ground acceleration above {least:.3f} g ({least / model.uplift:.2f} times "
             f"the uplift acceleration) makes the rotation grow until the {model.word} overturns."
         )
     return numbers

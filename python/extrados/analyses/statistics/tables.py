@@ -90,7 +90,7 @@ class Fragility(RockingTable):
     )
     durations: list[Time] | None = key(
         None,
-        "durations t_d of the motions of a generated set, for each of which the analysis is repeated",
+        "durations t_d of the generated motions. The analysis is repeated for each duration",
         source="thesis Fig. 6-8",
         min_length=1,
         max_length=100,
@@ -138,8 +138,8 @@ class Fragility(RockingTable):
     )
     hand_over: bool = key(
         False,
-        "if joints slide or hinges form at other joints, continue this run with rigid contacts; false "
-        "gives the share of these runs in a warning",
+        "if joints slide or hinges form at other joints than those of the mechanism, continue the run with rigid "
+        "contacts; if false, a warning states the share of such runs",
         source="Moreau 1988",
     )
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
@@ -229,9 +229,9 @@ class Resonance(RockingTable):
     kind: Literal["resonance"]
     considers: ClassVar = ()
     cap: Acceleration | None = key(
-        None, "limit of the ground acceleration; default: 0.6 times the uplift acceleration", gt=0, source="thesis Eq. 6.5"
+        None, "cap (greatest value) of the ground acceleration; default: 0.6 times the uplift acceleration", gt=0, source="thesis Eq. 6.5"
     )
-    half_cycles: int = key(40, "at most so many", ge=1, le=400)
+    half_cycles: int = key(40, "greatest number of half cycles", ge=1, le=400)
     impulse_amplitude: Acceleration | None = key(
         None, "amplitude of the impulses of Fig. 6-4; default: half of the uplift acceleration", gt=0, source="thesis 6.2.3"
     )
