@@ -252,8 +252,8 @@ class Generated(Motion):
     )
     dispersion: float = key(
         0.0,
-        "scatter of the amplitude from motion to motion: each is multiplied by a lognormal factor with "
-        "median 1, whose logarithm has this standard deviation",
+        "scatter of the amplitudes from motion to motion: each motion is multiplied by a lognormal factor with "
+        "median 1, and this value is the standard deviation of the logarithm of the factor",
         ge=0,
         le=2,
     )

@@ -114,7 +114,7 @@ def crack(facts: Facts, pairs: list[Pair]) -> Reason | None:
         "crack",
         mine,
         f"Limit analysis considers a crack in the leeward buttress. The collapse acceleration is {cracked:.3g} g with the "
-        f"crack and {whole:.3g} g with monolithic buttresses, which exceeds the peak of {facts.peak_g:.3g} g. The other "
+        f"crack. With monolithic buttresses it is {whole:.3g} g, which exceeds the peak of {facts.peak_g:.3g} g. The other "
         "strategies do not consider this crack.",
         cracked=cracked,
         whole=whole,
@@ -157,7 +157,7 @@ def sliding_as_collapse(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "sliding",
         mine,
-        f"Limit analysis counts sliding as collapse, which begins at {least:.3g} g. Under the motion the "
+        f"Limit analysis counts sliding as collapse. Sliding begins at {least:.3g} g. Under the motion the "
         f"blocks slide by {1000.0 * dem.peak_slip_m:.3g} mm and do not collapse.",
         static_capacity=least,
         slip_m=dem.peak_slip_m,

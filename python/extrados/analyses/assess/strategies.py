@@ -152,7 +152,7 @@ def _probability(asked: Asked) -> Choice:
     return Choice(
         {"count": count, "seed": 1, "uncertain": uncertain},
         f"{count} samples of the building with uncertain {told} (coefficients of variation); this "
-        f"strategy may use {100 * SHARES['probability']:g} % of the time budget, which limits their number",
+        f"strategy may use {100 * SHARES['probability']:g} % of the time budget, which limits the number of samples",
     )
 
 

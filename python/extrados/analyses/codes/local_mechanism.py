@@ -472,7 +472,7 @@ def _without_dilatancy(limit: LimitAnalysis, sense: int) -> tuple[float, Mechani
     state, mechanism = collapse_beside(limit.without_dilatancy(), sense)
     least = sense * state.gamma
     if least <= 0.0:
-        raise NoAnswer("a block that only friction between its neighbours carries slides out at any load")
+        raise NoAnswer("a block that is carried only by friction between its neighbours slides out at any load")
     assert limit.friction is not None  # blocks that cannot slide have no such state
     proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, limit.strength)
     if not proof.holds(state.gamma):

@@ -83,10 +83,7 @@ class Fragility(RockingTable):
     starter_motion: ClassVar = "generated"
     count: int | None = key(None, "number of motions; default 1000, or the whole set", ge=1, le=10_000_000)
     seed: int | None = key(
-        None,
-        "seed of the random numbers, for the uncertain values and (instead of its own seed) for a generated set of motions",
-        ge=0,
-        le=2**62,
+        None, "seed of the random numbers for the uncertain values. It also replaces the seed of a generated set of motions", ge=0, le=2**62
     )
     durations: list[Time] | None = key(
         None,
