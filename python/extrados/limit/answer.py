@@ -189,7 +189,7 @@ def cannot_stand(limit: LimitAnalysis) -> CannotStand:
             )
         if upright[0] < 0.0 or upright[1] > 0.0:
             return CannotStand(
-                f"{why_not(limit)}; certificate: balance of the work of loads and crushing in the mechanism under self-weight"
+                f"{why_not(limit)}; certificate: a mechanism, in which the loads do more work than crushing of the joints resists"
             )
     if motion is None:
         raise NoAnswer(

@@ -222,8 +222,7 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
     d0, fc = found.d0, confidence(context, options)
     if d0 is None and found.alone <= 0.0:
         context.warnings.append(
-            "The nonlinear check neglects ties, but without its ties this body has no equilibrium. The "
-            "nonlinear check is therefore not made."
+            "The nonlinear check neglects ties, but this body has no equilibrium without ties. The nonlinear check is therefore not made."
         )
     structure = context.building.structure
     storeys = len(structure.storeys) if isinstance(structure, Plan) else options.storeys or storeys_in(building or 0.0)

@@ -347,7 +347,7 @@ def _grounds(mesh: ShellMesh, options: Pushover, held: set) -> tuple[list[list[t
         if not free:
             word = "wall" if mesh.walls else "foot"
             raise BadGeometry(
-                f"{what}: no support of {word} '{support.name}' at this place restrains the direction `{ground.way}`, so "
+                f"{what}: at this place no support restrains {word} '{support.name}' in the direction `{ground.way}`, so "
                 "none can move: give another place or direction"
             )
         held -= {(n, d) for n, d, _ in free}

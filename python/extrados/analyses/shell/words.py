@@ -103,7 +103,7 @@ def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any
         flanges = curve["flanges"]
         text += (
             f"; transverse walls {'act as flanges' if flanges['working'] else 'hardly act as flanges'} "
-            f"({flanges['uplift_N'] / 1e3:.3g} kN up, {flanges['pressure_N'] / 1e3:.3g} kN down)"
+            f"({flanges['uplift_N'] / 1e3:.3g} kN up and {flanges['pressure_N'] / 1e3:.3g} kN down at their feet)"
         )
     moved = [row for row in curve.get("joints", []) if row["broken_share"] > 0.0]
     for row in sorted(moved, key=lambda row: -max(row["last_slip_m"], row["last_opening_m"]))[:3]:

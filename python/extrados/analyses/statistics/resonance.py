@@ -241,13 +241,13 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
             by_period,
             ("impulse_period_ratio", "impulse_start"),
             "",
-            "energy supplied divided by the energy at the start; start at a quarter of the critical rotation",
+            "energy supplied by the impulse, divided by the initial energy; initial rotation: a quarter of the critical rotation",
         ),
         "energy_by_rotation": Array(
             by_rotation,
             ("impulse_rotation", "impulse_start"),
             "",
-            "energy supplied divided by the energy at the start; impulse of half the natural period (T_p = T_n/2)",
+            "energy supplied by an impulse of half the natural period (T_p = T_n/2), divided by the initial energy",
         ),
     }
     numbers |= {
