@@ -84,8 +84,8 @@ class Verification(Table):
     )
     secant: float = key(
         0.7,
-        "share of the greatest base shear at which the bilinear curve meets the capacity curve, which "
-        "gives its stiffness; 0.6 is the general rule of C7.3.4.2",
+        "share of the greatest base shear at which the elastic branch of the bilinear curve meets the capacity "
+        "curve; 0.6 is the general rule of C7.3.4.2",
         ge=0.5,
         le=0.9,
         source="NTC 2018 7.8.1.6",
@@ -135,7 +135,7 @@ class Floor(Table):
     )
     arm: Length | None = key(None, "horizontal distance from the hinge to the load, inwards; default: the middle of the wall", ge=0)
     sways: bool = key(True, "whether the wall accelerates the mass of the load; false if other walls restrain the load")
-    thrust: Force = key(0.0, "outward horizontal thrust of the load under vertical loads only (without earthquake)")
+    thrust: Force = key(0.0, "outward horizontal thrust of the load without earthquake")
 
 
 class WallTie(Table):

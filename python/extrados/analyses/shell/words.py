@@ -42,7 +42,7 @@ def answer_of_push(building: Building, options: Pushover, numbers: dict[str, Any
 def _stage_told(stage: dict[str, Any]) -> str:
     end = stage["end_load_N"]
     if end is None:
-        return f"{stage['name']} without a state in equilibrium"
+        return f"{stage['name']}, no equilibrium state found"
     if stage["of"] == "settlement":
         return f"{stage['name']}, settlement of the ground: {stage['damaged_points']} integration points crack"
     return f"{stage['name']}, load towards {stage['sense']}, ends at {end / 1e3:.4g} kN ({stage['stop']})"
