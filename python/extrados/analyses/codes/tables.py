@@ -30,7 +30,7 @@ class CodeChecks(BuildingAnalysis):
         False, "if no code spectrum is given: use the response spectrum and the peak velocity of the motion in the deck"
     )
     pulse_period: Time | None = key(
-        None, "period of the sine for the formula of Housner, which considers one half cycle; adds this check", gt=0
+        None, "period of the sine for the formula of Housner, which considers one half cycle; adds the check by this formula", gt=0
     )
     behaviour_factor: float | None = key(
         None,

@@ -42,7 +42,7 @@ class Hazard(Table):
     )
     annual_rates: list[Rate] | None = key(
         None,
-        "mean annual rates at which the `intensities` are exceeded, in decreasing order; interpolated linearly between logarithms",
+        "mean annual rates at which the `intensities` are exceeded, in decreasing order; interpolated linearly in the logarithms",
         min_length=2,
         max_length=1000,
     )
@@ -50,7 +50,7 @@ class Hazard(Table):
         None, "CSV file with both columns, instead of `intensities` and `annual_rates`; lines that begin with # are ignored"
     )
     years: float = key(50.0, "number of years for which the probability of collapse is given", gt=0, le=1e5)
-    acceptable_rate: Rate | None = key(None, "annual rate of collapse that is acceptable: the demand of the verdict")
+    acceptable_rate: Rate | None = key(None, "acceptable annual rate of collapse. The verdict compares the calculated rate with this value")
 
     @model_validator(mode="after")
     def _curve(self) -> "Hazard":

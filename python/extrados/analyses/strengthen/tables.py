@@ -121,7 +121,7 @@ class TieOption(Tie):
 class Change(Table):
     """A number of the deck that is changed: a thickness, a buttress, a base width, a strength after injection, a damper."""
 
-    name: str | None = key(None, "name of the intervention; default: the key", max_length=80)
+    name: str | None = key(None, "name of the intervention; default: the value of `vary`", max_length=80)
     vary: str = key(
         about="key of the deck with its table, for instance structure.buttress_width, material.compressive_strength, "
         "joints.friction or dampers.0.damping; for a key of the options below, begin with `options.`"
@@ -195,7 +195,7 @@ class Strengthen(LimitAnalysisTable):
         if self.acceleration is not None and self.by != "tilt":
             raise ValueError(f'the target `acceleration` requires by = "tilt"; with by = "{self.by}", give a `safety_factor`')
         if self.by == "tilt" and self.options:
-            raise ValueError('options: with by = "tilt", give these keys in this table instead')
+            raise ValueError('options: with by = "tilt", give the keys of this table directly in the table of the analysis')
         if "levels" in self.model_fields_set and not self.fragility:
             raise ValueError("levels: needs fragility = true")
         if "budget" in self.model_fields_set and not self.assess:
