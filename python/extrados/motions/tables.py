@@ -264,13 +264,14 @@ class Generated(Motion):
     )
     rise: Time | None = key(
         None,
-        "width of the rise of the arctangent envelope (default 0.1 s); for other envelopes, time until "
-        "the full amplitude (default 0.15 or 0.2 times t_d)",
+        "for the arctangent envelope: width of the rise (default 0.1 s); for other envelopes: time until the full "
+        "amplitude (default 0.2 times t_d for saragoni-hart, otherwise 0.15 times t_d)",
         gt=0,
     )
     decay: Time | None = key(
         None,
-        "duration of the decay: for a trapezoid, at the end of t_d; for jennings, after t_d, down to 5 % (default 0.4 times t_d)",
+        "for a trapezoid: duration of the decay at the end of t_d; for jennings: time after t_d until the envelope is "
+        "5 %; default 0.4 times t_d",
         gt=0,
     )
     lead: Time = key(0.5, "time t_0 before the duration t_d", ge=0, le=60)
