@@ -252,8 +252,8 @@ class Generated(Motion):
     )
     dispersion: float = key(
         0.0,
-        "scatter of the amplitudes from motion to motion: each motion is multiplied by a lognormal factor with "
-        "median 1, and this value is the standard deviation of the logarithm of the factor",
+        "scatter of the amplitudes from motion to motion: standard deviation of the logarithm of the factor by which each "
+        "motion is multiplied (lognormal, median 1)",
         ge=0,
         le=2,
     )

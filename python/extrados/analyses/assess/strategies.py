@@ -304,8 +304,8 @@ def _dem(asked: Asked) -> Choice:
     return Choice(
         keys,
         f"{words}; the joints have {engineering(stiffness, 'Pa/m')}, the greatest stiffness for which the "
-        f"run fits into {100 * SHARES['dem']:g} % of the time budget (E divided by the block length would give {engineering(float(np.median(values.stiffness)), 'Pa/m')}; "
-        f"the least stiffness that is sufficient is {engineering(least, 'Pa/m')})",
+        f"run fits into {100 * SHARES['dem']:g} % of the time budget. E divided by the block length would give {engineering(float(np.median(values.stiffness)), 'Pa/m')}. "
+        f"The least stiffness that is sufficient is {engineering(least, 'Pa/m')}",
         taken,
     )
 

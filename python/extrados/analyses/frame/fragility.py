@@ -442,7 +442,7 @@ def _knowledge(
     share = float((drawn[np.isfinite(drawn)] < reached).mean())
     result.warnings.append(
         f"If all strengths are divided by the confidence factor {factor:.3g}, the building collapses at {reached:.3g} "
-        f"g under the median motion; {100 * share:.3g} % of the sampled buildings collapse at a lower intensity."
+        f"g under the median motion. {100 * share:.3g} % of the sampled buildings collapse at a lower intensity."
     )
     return {"confidence_factor": factor, "design_intensity_g": reached, "weaker_share": share}
 
