@@ -275,7 +275,7 @@ WRONG = {
     ),
     "base too soft": ("overturns under its own weight", BLOCK + PULSE + "[supports]\nstiffness = 1e3 # here\n" + ROCKING),
     "durations of one pulse": ("'generated'", BLOCK + PULSE + '[[analysis]]\nkind = "fragility"\ncount = 1\ndurations = [1, 2] # here\n'),
-    "more motions than there are": ("expected at most 1", BLOCK + PULSE + '[[analysis]]\nkind = "fragility"\ncount = 4 # here\n'),
+    "more motions than there are": ("give at most 1", BLOCK + PULSE + '[[analysis]]\nkind = "fragility"\ncount = 4 # here\n'),
     "buttress of an arch": (
         "requires a buttress",
         ARCH + '[[analysis]]\nkind = "sweep"\nvary = "thickness"\nstart = 1\nstop = 2\nbuttress_alone = true # here\n',

@@ -132,7 +132,7 @@ def test_the_floor_spectrum_of_several_modes_is_the_root_of_the_sum_of_squares()
     site = {"code": "EN1998-1", "ground": "B", "acceleration": "0.15 g"}
     r = extrados.run({"analysis": {**base, "modes": modes, "spectrum": site}})["local-mechanism"]
     assert r.floor_acceleration_g == pytest.approx(2.5 * 0.18 * 1.1 * math.sqrt(1.01))
-    with pytest.raises(DeckError, match="the key `modes` already gives this value"):
+    with pytest.raises(DeckError, match="the key `modes` already gives its value"):
         make_deck({"analysis": {**base, "modes": modes, "storeys": 3}})
 
 
@@ -228,7 +228,7 @@ def test_a_peak_acceleration_is_a_demand_on_a_pier() -> None:
     lateral = extrados.run({**deck, "code": {"jurisdiction": "ASCE41", "knowledge_level": "usual"}})["code-checks"]
     assert lateral.checks["ASCE 41 toe crushing"].demand == pytest.approx(0.6 * load)
     nz = extrados.run({**deck, "code": {"jurisdiction": "NZSEE"}})["code-checks"].overall()
-    assert nz.outcome == "not-applicable" and "could not be read" in nz.statement
+    assert nz.outcome == "not-applicable" and "was not available" in nz.statement
 
 
 def test_residual_sliding_is_no_least_strength() -> None:

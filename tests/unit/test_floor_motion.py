@@ -152,7 +152,7 @@ def test_rules_that_the_motion_of_one_floor_does_not_answer_say_so() -> None:
     wall = replace(part, element="vertical-bending", weight=1e4)
     told = [
         (en1998(part, 3.0, spectrum=lambda t, xi: 3.0)[0], "T_a is not known"),
-        (nzsee(wall, lambda t, xi: 3.0)[1], "floor above moves otherwise"),
+        (nzsee(wall, lambda t, xi: 3.0)[1], "floor above moves differently"),
     ]
     for line, words in told:
         assert line.verdict == "not-applicable" and line.demand is None and words in line.barred

@@ -102,7 +102,7 @@ def test_why_a_motion_is_not_pulse_like() -> None:
     assert any("the pulse indicator" in why and "not above 0.85" in why for why in noise.fails)
     assert late.pulse_like == (late.fails == ())
     over = classify(pulse[:2000], 1e-12)
-    assert not over.pulse_like and over.fails == ("the motion ends after 2e-09 s, which is too early for a pulse",)
+    assert not over.pulse_like and over.fails == ("the motion ends after 2e-09 s, which is too short for a pulse",)
 
 
 def test_a_motion_too_slow_for_its_spectra_is_refused() -> None:

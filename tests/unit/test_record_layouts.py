@@ -209,7 +209,7 @@ REFUSED = {
     "count": (f"{len(N)}.0\n{len(N)}\n" + COLUMN, {}, "count of the values that follow|exceeds twice"),
     "real numbers": ("-999.00\n-999.00\n" + COLUMN, {}, "exceeds twice the greatest value"),
     "counts in other columns": ("400 0.01\n" + COLUMN, {}, ":2: this line has 1 columns, but the lines above have 2; put #"),
-    "pairs": ("".join(f"{0.01 * k:.2f} {v:.2f}\n" for k, v in enumerate(N)), {"columns": "series"}, "the values at a distance of 2 places"),
+    "pairs": ("".join(f"{0.01 * k:.2f} {v:.2f}\n" for k, v in enumerate(N)), {"columns": "series"}, "values that are 2 places apart"),
     "only times": ("".join(f"{0.01 * k:.2f}\n" for k in range(400)), {}, "increase like times"),
     "time last": ("".join(f"{v:.2f} {0.01 * k:.2f}\n" for k, v in enumerate(N)), {"channel": 2}, "put the times in the first column"),
     "fewer than stated": ("402 points in cm/s2\n" + COLUMN, {}, "the header states 402 values, but 400 follow"),

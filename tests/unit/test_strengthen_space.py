@@ -203,7 +203,7 @@ def test_a_change_in_space_is_met_only_where_a_state_without_dilatancy_is_found(
 
 
 @pytest.mark.parametrize(
-    ("keys", "text"), [({"direction": "+x"}, "give directions"), ({"friction_rule": "non-associated"}, "dilatant sliding")]
+    ("keys", "text"), [({"direction": "+x"}, "give `directions`"), ({"friction_rule": "non-associated"}, "dilatant sliding")]
 )
 def test_what_is_known_of_plane_sections_alone_is_refused_in_space(keys, text):
     asked = {"kind": "strengthen", "acceleration": "0.5 g", **keys}

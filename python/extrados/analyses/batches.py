@@ -167,10 +167,10 @@ class _Batches:
             end = 0
             for first, arrays, path in self.kept.placed(self.name, context.warnings):
                 if _are_rows(arrays) and not end <= first <= count - _rows(arrays):  # of another run that was going on at the same time
-                    context.warnings.append(f"a saved batch of results overlaps another batch and is not used; it begins at run {first}")
+                    context.warnings.append(f"the saved batch that begins at run {first} is not used, because it overlaps another batch")
                 elif not _are_rows(arrays) or (self.names and set(arrays) != set(self.names)):  # of a stranger
                     context.warnings.append(
-                        f"a saved batch does not contain results of this analysis and is not used; it begins at run {first}"
+                        f"the saved batch that begins at run {first} is not used, because its results are not of this analysis"
                     )
                 else:
                     self._put(first, arrays, path)

@@ -189,7 +189,7 @@ def cannot_stand(limit: LimitAnalysis) -> CannotStand:
             )
         if upright[0] < 0.0 or upright[1] > 0.0:
             return CannotStand(
-                f"{why_not(limit)}; certificate: balance of the work of loads and crushing in the mechanism under self-weight"
+                f"{why_not(limit)}; certificate: a mechanism, in which the loads do more work than crushing of the joints resists"
             )
     if motion is None:
         raise NoAnswer(
@@ -234,7 +234,7 @@ def why_not(limit: LimitAnalysis) -> str:
         return "no thrust line stays inside the structure"
     if part < 1.0 and limit.strength is not None:
         return (
-            f"a thrust line passes within the central {part:.3f} of the joints, but the strength of {engineering(limit.strength, 'Pa')} "
+            f"a thrust line passes within the central {100.0 * part:.3g} % of the joints, but the strength of {engineering(limit.strength, 'Pa')} "
             "is not sufficient for this thrust line"
         )
     if limit.friction is not None and LimitAnalysis(assembly, loads=limit.loads).stands():
@@ -242,8 +242,8 @@ def why_not(limit: LimitAnalysis) -> str:
     off = 2.0 * np.abs(state.position - 0.5)
     worst = [assembly.joint_names[j] for j in np.flatnonzero(off > part * (1.0 - 1e-6))]
     return (
-        f"no thrust line stays inside the structure: the section would have to be {100.0 * (part - 1.0):.4g} % thicker, "
-        f"the thrust line first leaves the structure at {', '.join(worst[:6])}"
+        f"no thrust line stays inside the structure: the section would have to be {100.0 * (part - 1.0):.4g} % thicker "
+        f"(the thrust line first leaves the structure at {', '.join(worst[:6])})"
     )
 
 

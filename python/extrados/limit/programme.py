@@ -265,8 +265,8 @@ class LimitAnalysis:
             lower, upper = ("nothing" if g is None else f"{direction * g:.4f}" for g in self.without_dilatancy_between(direction))
             raise NoAnswer(
                 "no collapse state without dilatancy was found. The collapse load lies between the value without "
-                f"friction ({lower}) and the value with dilatancy ({upper}). If only friction between its "
-                "neighbours carries a block, such a state may not exist"
+                f"friction ({lower}) and the value with dilatancy ({upper}). If a block is carried only by "
+                "friction between its neighbours, such a state may not exist"
             )
         self.coulomb[direction] = found
         taken = -float((found.corners * found.motion).sum())

@@ -98,7 +98,9 @@ class SolidStates:
                 part = high * (1.0 - 0.9 * CLOSE)
             if not low < part < high:
                 part = 0.5 * (low + high)
-        raise NoAnswer(f"the most central state lies between the middle {100 * low:.3g} and {100 * high:.3g} % of the contacts")
+        raise NoAnswer(
+            f"the most central state was not found: the middle part of the contacts that it needs is between {100 * low:.3g} and {100 * high:.3g} %"
+        )
 
     def _within(self, part: float, pressure: np.ndarray) -> tuple[SolidState | None, float]:
         """The state within a part of the contacts and its spare multiplier of `pressure` (nj, 3), a force at their middles."""

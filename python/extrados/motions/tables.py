@@ -90,7 +90,7 @@ class Treated(Motion):
     low_cut: Frequency | None = key(None, "lower corner of a zero-phase Butterworth filter", gt=0)
     high_cut: Frequency | None = key(None, "upper corner of a zero-phase Butterworth filter", gt=0)
     baseline: Literal["none", "mean", "linear", "quadratic", "cubic"] = key(
-        "none", "degree of the polynomial trend of the acceleration that is removed; it is fitted to the velocity"
+        "none", "polynomial trend that is removed from the acceleration; its coefficients are fitted to the velocity"
     )
     resample: Time | None = key(None, "new sampling step", gt=0)
     pga: Acceleration | None = key(
@@ -224,7 +224,7 @@ class Generated(Motion):
     kind: Literal["generated"]
     starter: ClassVar = {"mmi": "7", "duration": "10.0"}
     mmi: float = key(about="modified Mercalli intensity", ge=1, le=12)
-    duration: Time = key(about="t_d", gt=0, le=600, source="thesis Eq. 6.7")
+    duration: Time = key(about="duration t_d of the motion, without `lead` and `tail`", gt=0, le=600, source="thesis Eq. 6.7")
     seed: int = key(1, "seed of the random numbers: the same seed gives the same set", ge=-(2**62), le=2**62)
     member: int = key(1, "number (from 1), in the set, of the motion that a single run uses", ge=1, le=2**31)
     spectrum: str = key(
@@ -245,11 +245,15 @@ class Generated(Motion):
         "step, P: envelope, factor: the key `factor`",
         source="thesis Eq. 6.6",
     )
-    factor: float = key(1.0, 'factor on the amplitudes; with scaling = "thesis", also the unit of the frequency step', gt=0)
+    factor: float = key(
+        1.0,
+        'factor on the amplitudes. With scaling = "thesis", it includes the unit of the frequency step, which the thesis does not give',
+        gt=0,
+    )
     dispersion: float = key(
         0.0,
-        "scatter of the amplitude from motion to motion: each is multiplied by a lognormal factor with "
-        "median 1, whose logarithm has this standard deviation",
+        "scatter of the amplitudes from motion to motion: standard deviation of the logarithm of the factor by which each "
+        "motion is multiplied (lognormal, median 1)",
         ge=0,
         le=2,
     )
@@ -260,17 +264,18 @@ class Generated(Motion):
     )
     rise: Time | None = key(
         None,
-        "width of the rise of the arctangent envelope (default 0.1 s); for other envelopes, time until "
-        "the full amplitude (default 0.15 or 0.2 times t_d)",
+        "for the arctangent envelope: width of the rise (default 0.1 s); for other envelopes: time until the full "
+        "amplitude (default 0.2 times t_d for saragoni-hart, otherwise 0.15 times t_d)",
         gt=0,
     )
     decay: Time | None = key(
         None,
-        "duration of the decay: for a trapezoid, at the end of t_d; for jennings, after t_d, down to 5 % (default 0.4 times t_d)",
+        "for a trapezoid: duration of the decay at the end of t_d; for jennings: time after t_d until the envelope is "
+        "5 %; default 0.4 times t_d",
         gt=0,
     )
-    lead: Time = key(0.5, "time before t_d, t_0", ge=0, le=60)
-    tail: Time = key(2.0, "time after t_d", ge=0, le=600)
+    lead: Time = key(0.5, "time t_0 before the duration t_d", ge=0, le=60)
+    tail: Time = key(2.0, "time after the duration t_d", ge=0, le=600)
     time_step: Time = key(0.01, "sampling step", ge=1e-4, le=0.1)
 
     @model_validator(mode="after")

@@ -81,7 +81,7 @@ def classify(acceleration: np.ndarray, step: float) -> PulseClass:
     if pgv == 0.0:
         return _none(velocity, "nothing moves")
     if step * len(velocity) < 0.1 * SHORTEST:  # a wavelet would have samples without end
-        return _none(velocity, f"the motion ends after {step * len(velocity):.3g} s, which is too early for a pulse")
+        return _none(velocity, f"the motion ends after {step * len(velocity):.3g} s, which is too short for a pulse")
     # energy off the time grid's ends: a wavelet may reach beyond the record
     top = min(LONGEST, 0.9 * step * len(velocity) * _CENTRE)
     periods = np.geomspace(SHORTEST, max(top, 1.01 * SHORTEST), 80)

@@ -122,7 +122,7 @@ class Code(Table):
         if strange := [s for s in self.limit_states if s not in LIMIT_STATES[own]]:
             raise ValueError(f"limit_states: {strange[0]} is not a limit state of {own}; expected {_list(LIMIT_STATES[own])}")
         if len(set(self.limit_states)) < len(self.limit_states):
-            raise ValueError("limit_states: one of them occurs twice")
+            raise ValueError("limit_states: a limit state occurs twice")
         if self.knowledge_level is not None and self.knowledge_level not in KNOWLEDGE[own]:
             raise ValueError(f"knowledge_level: {self.knowledge_level} is not a level of {own}; expected {_list(KNOWLEDGE[own])}")
         unused = {name for keys in ACTION.values() for name in keys} - set(ACTION[own])

@@ -65,11 +65,13 @@ def _least_by_rocking(asker: Asker, tie: Intervention) -> Intervention | None:
 def _told_by_rocking(least: Intervention, tie: Intervention) -> str:
     """The least tie by rocking against that of limit analysis, in words."""
     if not least.meets_target or least.required_N is None or tie.required_N is None:
-        return f"According to the rocking analysis under the hazard, no force up to this value is sufficient for the tie: {least.reason}."
+        return (
+            f"According to the rocking analysis under the hazard, no tie force up to that of limit analysis is sufficient: {least.reason}."
+        )
     return (
         f"According to the rocking analysis under the hazard, the same tie requires {engineering(least.required_N, 'N')}. "
-        f"This is {100.0 * least.required_N / tie.required_N:.0f} % of the force for the peak acceleration "
-        "as a sustained load; this lower value is valid only for this motion."
+        f"This is {100.0 * least.required_N / tie.required_N:.0f} % of the force that the peak "
+        "acceleration requires as a sustained load. The lower force is valid only for this motion."
     )
 
 

@@ -147,8 +147,8 @@ def _turning(work: Work, left: int, choice: Choice) -> None:
         table = hazard.scaled(motion, model, factor)
         if table is None:
             work.not_done.append(
-                "discrete elements at other scale factors were not run: the motion is matched to a code "
-                "spectrum, which one acceleration does not define, so no factor can scale it"
+                "discrete elements at other scale factors were not run: a factor cannot scale the code "
+                "spectrum of the motion, because this spectrum is not given by one acceleration"
             )
             break
         if left < 1:

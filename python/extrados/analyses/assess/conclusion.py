@@ -106,12 +106,14 @@ def _hazard_told(work: Work, motion: Any) -> str:
 def _arrays(work: Work, facts: Facts, rows: list[out.StrategyVerdict], result: Result) -> None:
     low, high = np.array([facts.interval(r.strategy) for r in rows]).reshape(-1, 2).T
     result.arrays = {
-        "margin_low": Array(low, ("strategy",), "", "for each strategy: greatest scale factor of the hazard at which no collapse is known"),
+        "margin_low": Array(
+            low, ("strategy",), "", "for each strategy: greatest scale factor of the hazard that is known to cause no collapse"
+        ),
         "margin_high": Array(
             np.where(np.isinf(high), np.nan, high),
             ("strategy",),
             "",
-            "for each strategy: least scale factor of the hazard at which collapse is known; NaN: not known",
+            "for each strategy: least scale factor of the hazard that is known to cause collapse; NaN: not known",
         ),
     }
     time_s, ground = facts.motion.series()

@@ -130,7 +130,7 @@ def _scaled_set(work: Work) -> None:
     if found is not None:
         work.results["probability"] = work.results.pop("scaled")
         member = _governing(found)
-        how = f"the motion of the set whose rotation exceeds that of {100 * hazard.GOVERNING:g} % of the other motions"
+        how = f"the motion that causes a greater rotation than {100 * hazard.GOVERNING:g} % of the other motions of the set"
     work.chosen = {"member": member, "chosen_by": how}
     work.asker.motion = {**work.asker.motion, "member": member}
     if not isinstance(work.context.deck.motion, kinds.table("motion", "compatible")):

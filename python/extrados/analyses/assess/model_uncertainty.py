@@ -125,7 +125,7 @@ def _entry(row: StrategyVerdict) -> ModelUncertainty | str:
         return "no result"
     entries = [one for one in uncertainties_of(of(row.strategy).kind) if one.quantity in CAPACITIES]
     if row.axis != STATIC or not entries:
-        return "the verification book does not compare its capacity with known results"
+        return "the verification book does not compare the capacity of this strategy with known results"
     if row.violated:
         return "assumptions that do not hold"
     if row.margin is None:

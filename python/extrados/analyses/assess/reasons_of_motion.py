@@ -52,8 +52,8 @@ def impact_rule(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "impact-rule",
         mine,
-        f"The energy loss at impacts decides the outcome: rocking collapses by {told(falls)} and recovers by "
-        f"{told(stands)}. Discrete elements lose energy by the damping of their contacts instead.",
+        f"The energy loss at impacts decides the outcome: rocking collapses with the impact rule {told(falls)} "
+        f"and recovers with {told(stands)}. Discrete elements lose energy by the damping of their contacts instead.",
         **numbers,
     )
 
@@ -174,7 +174,7 @@ def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "sliding",
         mine,
-        f"{text}, which a rocking mechanism excludes. Without sliding the discrete elements "
+        f"{text}. A rocking mechanism excludes sliding. Without sliding the discrete elements "
         f"{'collapse' if other.outcome == 'collapse' else 'stand'}, with a displacement of {other.peak_displacement_m:.3g} m. With "
         f"sliding {'they collapse' if dem.outcome == 'collapse' else f'the displacement is {dem.peak_displacement_m:.3g} m'}.",
         **numbers,

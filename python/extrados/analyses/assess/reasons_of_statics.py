@@ -47,8 +47,8 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
     needed = facts.needed_s(amplitude)
     told = f"{amplitude:.3g} g" if factor == 1.0 else f"{amplitude:.3g} g (the motion times {factor:.3g})"
     text = (
-        f"Static analysis applies the peak of {told} as a constant horizontal acceleration; the motion exceeds the {capacity:.3g} g of "
-        f"{facts.rows[weakest].label} {count} time{'s' if count != 1 else ''}, each time for {longest:.3g} s at most"
+        f"Static analysis applies the peak of {told} as a constant horizontal acceleration. The motion exceeds {capacity:.3g} g "
+        f"(capacity by {facts.rows[weakest].label}) {count} time{'s' if count != 1 else ''}, each time for {longest:.3g} s at most"
     )
     numbers = {"static_capacity": capacity, "peak": amplitude, "excursions": float(count), "longest_s": longest, "needed_s": needed}
     if needed is not None and longest < needed:
@@ -94,8 +94,8 @@ def _by_passages(facts: Facts, mine: list[Pair], text: str, level: float, factor
     return reason(
         "static-peak",
         mine,
-        f"{text}. These times are too short for collapse: the most dangerous has a mean of {mean:.3g} g over {length:.3g} "
-        f"s, and a constant horizontal acceleration of {mean:.3g} g must act for {needed:.3g} s to cause collapse.",
+        f"{text}. These times are too short for collapse: the most dangerous interval has a mean of {mean:.3g} g over "
+        f"{length:.3g} s. A constant horizontal acceleration of {mean:.3g} g must act for {needed:.3g} s to cause collapse.",
         **{**numbers, "passage_g": mean, "passage_s": length, "passage_needed_s": needed},
     )
 
@@ -114,7 +114,7 @@ def crack(facts: Facts, pairs: list[Pair]) -> Reason | None:
         "crack",
         mine,
         f"Limit analysis considers a crack in the leeward buttress. The collapse acceleration is {cracked:.3g} g with the "
-        f"crack and {whole:.3g} g with monolithic buttresses, which exceeds the peak of {facts.peak_g:.3g} g. The other "
+        f"crack. With monolithic buttresses it is {whole:.3g} g, which exceeds the peak of {facts.peak_g:.3g} g. The other "
         "strategies do not consider this crack.",
         cracked=cracked,
         whole=whole,
@@ -157,7 +157,7 @@ def sliding_as_collapse(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "sliding",
         mine,
-        f"Limit analysis counts sliding as collapse, which begins at {least:.3g} g. Under the motion the "
+        f"Limit analysis counts sliding as collapse. Sliding begins at {least:.3g} g. Under the motion the "
         f"blocks slide by {1000.0 * dem.peak_slip_m:.3g} mm and do not collapse.",
         static_capacity=least,
         slip_m=dem.peak_slip_m,

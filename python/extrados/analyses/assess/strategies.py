@@ -140,7 +140,7 @@ def _scatter(asked: Asked) -> dict[str, float]:
 def _probability(asked: Asked) -> Choice:
     if asked.motions > 1:
         raise LeftOut(
-            "this strategy is not needed: its set of motions already varies, and the row of the set gives "
+            "this strategy is not needed: the hazard is already a set of different motions, and the row of the set gives "
             "the share of motions that cause collapse"
         )
     uncertain = asked.options.uncertain or _scatter(asked)
@@ -152,7 +152,7 @@ def _probability(asked: Asked) -> Choice:
     return Choice(
         {"count": count, "seed": 1, "uncertain": uncertain},
         f"{count} samples of the building with uncertain {told} (coefficients of variation); this "
-        f"strategy may use {100 * SHARES['probability']:g} % of the time budget, which limits their number",
+        f"strategy may use {100 * SHARES['probability']:g} % of the time budget, which limits the number of samples",
     )
 
 
@@ -304,8 +304,8 @@ def _dem(asked: Asked) -> Choice:
     return Choice(
         keys,
         f"{words}; the joints have {engineering(stiffness, 'Pa/m')}, the greatest stiffness for which the "
-        f"run fits into {100 * SHARES['dem']:g} % of the time budget (E divided by the block length gives {engineering(float(np.median(values.stiffness)), 'Pa/m')}; "
-        f"{engineering(least, 'Pa/m')} is sufficient)",
+        f"run fits into {100 * SHARES['dem']:g} % of the time budget. E divided by the block length would give {engineering(float(np.median(values.stiffness)), 'Pa/m')}. "
+        f"The least stiffness that is sufficient is {engineering(least, 'Pa/m')}",
         taken,
     )
 

@@ -35,7 +35,7 @@ class Assess(Analysis):
     budget: float = key(
         60.0,
         "time limit in s. The program chooses the sizes of the expensive strategies so that their estimated time (one core of a "
-        "computer of 2024) fits into this limit. Steps that still run after it are stopped and reported",
+        "computer of 2024) fits into this limit. Steps that exceed the limit are stopped and reported",
         ge=5,
         le=1e6,
     )
@@ -46,12 +46,7 @@ class Assess(Analysis):
         min_length=1,
         max_length=len(STRATEGIES),
     )
-    thin: float = key(
-        1.5,
-        "a critical scale factor between the inverse of this value and this value counts as close to 1; additional runs then follow",
-        gt=1,
-        le=10,
-    )
+    thin: float = key(1.5, "critical scale factors from 1/`thin` to `thin` count as close to 1 and cause additional runs", gt=1, le=10)
     apart: float = key(1.5, "ratio of two critical scale factors from which they are reported as different, with the reasons", gt=1, le=10)
     acceptable_probability: float = key(
         0.05,
@@ -103,5 +98,5 @@ class Assess(Analysis):
     @model_validator(mode="after")
     def _once(self) -> "Assess":
         if len(set(self.strategies)) < len(self.strategies):
-            raise ValueError("the list `strategies` contains one of them twice")
+            raise ValueError("the list `strategies` contains a strategy twice: remove one")
         return self

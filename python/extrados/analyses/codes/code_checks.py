@@ -76,7 +76,7 @@ def run(context: Context, options: CodeChecks) -> Result:
         }[r.dynamic_outcome]
         words.append(f"Calculated under the motion itself, the block {spoken}.")
     if (weakest := r.weakest()) is not None and said:
-        words.append(f"As a pier, its lowest strength is {(weakest[1].capacity or 0.0) / 1e3:.4g} kN ({weakest[0]}).")
+        words.append(f"The lowest strength of the block as a pier is {(weakest[1].capacity or 0.0) / 1e3:.4g} kN ({weakest[0]}).")
     result.answer = " ".join(words)
     return result
 

@@ -222,8 +222,7 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
     d0, fc = found.d0, confidence(context, options)
     if d0 is None and found.alone <= 0.0:
         context.warnings.append(
-            "The nonlinear check neglects ties, but without its ties this body has no equilibrium. The "
-            "nonlinear check is therefore not made."
+            "The nonlinear check neglects ties, but this body has no equilibrium without ties. The nonlinear check is therefore not made."
         )
     structure = context.building.structure
     storeys = len(structure.storeys) if isinstance(structure, Plan) else options.storeys or storeys_in(building or 0.0)
@@ -472,11 +471,13 @@ def _without_dilatancy(limit: LimitAnalysis, sense: int) -> tuple[float, Mechani
     state, mechanism = collapse_beside(limit.without_dilatancy(), sense)
     least = sense * state.gamma
     if least <= 0.0:
-        raise NoAnswer("a block that only friction between its neighbours carries slides out at any load")
+        raise NoAnswer("a block that is carried only by friction between its neighbours slides out at any load")
     assert limit.friction is not None  # blocks that cannot slide have no such state
     proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, limit.strength)
     if not proof.holds(state.gamma):
-        raise NoAnswer(f"the state found is not certified (difference between forces and mechanism {proof.zero_gap:.1e} g)")
+        raise NoAnswer(
+            f"the state found is not certified (the loads from its forces and from its mechanism differ by {proof.zero_gap:.1e} g)"
+        )
     return least, mechanism
 
 

@@ -59,8 +59,8 @@ def _bending(options: LocalMechanism, density: float, strength: float | None) ->
         for k, floor in enumerate(options.floors):
             if floor.height < float(options.height or 0.0) or floor.pushing or floor.thrust:
                 raise Refused(
-                    "vertical bending includes the load of the floors on top of the wall, and these floors restrain "
-                    "the top: give `height` at the top, and `load`",
+                    "for vertical bending, floors load only the top of the wall and restrain the top: give the "
+                    "`height` of the top and `load`, without `pushing` and `thrust`",
                     ("analysis", "floors", k),
                 )
         load = sum(f.load for f in options.floors)

@@ -67,8 +67,8 @@ def en1998(part: Part, peak: float | None, state: str = "SD", spectrum: Callable
     elif part.shaken:
         if part.period is None:
             barred = (
-                "T_a is not known. The action is the motion of the floor, so S_a is its response at T_a: give period, or [material] young of "
-                "a part that vibrates freely"
+                "T_a is not known. The action is the motion of the floor, so S_a is its response at T_a: give `period`, or for a part that "
+                "vibrates freely `young` of [material]"
             )
         elif spectrum is not None:
             asked = spectrum(part.period, 0.05) / GRAVITY
@@ -224,7 +224,9 @@ def _nz_wall(part: Part, spectrum: Callable[[float, float], float] | None, state
     elif part.load < 0.0 or part.height is None or part.thickness is None:
         barred = "the dimensions of the wall are not known"
     elif part.shaken:
-        barred = "the action is the motion of the floor below. The floor above moves otherwise, so the demand is not known: give a spectrum"
+        barred = (
+            "the action is the motion of the floor below. The floor above moves differently, so the demand is not known: give a spectrum"
+        )
     else:
         found = one_way(part.height, part.thickness, part.weight, part.load)
         capacity = USABLE_WALL * found.instability

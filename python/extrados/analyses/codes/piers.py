@@ -285,7 +285,7 @@ def nzsee_piers() -> list[Line]:
             "",
             "NZSEE",
             scope=PIER,
-            barred="the equations of C8 for in-plane strength of piers are not included in this program: their text could not be read",
+            barred="the equations of C8 for in-plane strength of piers are not included in this program: their text was not available",
         )
     ]
 

@@ -30,7 +30,7 @@ class CodeChecks(BuildingAnalysis):
         False, "if no code spectrum is given: use the response spectrum and the peak velocity of the motion in the deck"
     )
     pulse_period: Time | None = key(
-        None, "period of the sine for the formula of Housner, which considers one half cycle; adds this check", gt=0
+        None, "period of the sine for the formula of Housner, which considers one half cycle; adds the check by this formula", gt=0
     )
     behaviour_factor: float | None = key(
         None,
@@ -84,8 +84,8 @@ class Verification(Table):
     )
     secant: float = key(
         0.7,
-        "share of the greatest base shear at which the bilinear curve meets the capacity curve, which "
-        "gives its stiffness; 0.6 is the general rule of C7.3.4.2",
+        "share of the greatest base shear at which the elastic branch of the bilinear curve meets the capacity "
+        "curve; 0.6 is the general rule of C7.3.4.2",
         ge=0.5,
         le=0.9,
         source="NTC 2018 7.8.1.6",
@@ -135,7 +135,7 @@ class Floor(Table):
     )
     arm: Length | None = key(None, "horizontal distance from the hinge to the load, inwards; default: the middle of the wall", ge=0)
     sways: bool = key(True, "whether the wall accelerates the mass of the load; false if other walls restrain the load")
-    thrust: Force = key(0.0, "outward horizontal thrust of the load under vertical loads only (without earthquake)")
+    thrust: Force = key(0.0, "outward horizontal thrust of the load without earthquake")
 
 
 class WallTie(Table):
@@ -206,7 +206,7 @@ class LocalMechanism(BuildingAnalysis):
     mechanism: Literal[
         "facade", "corner", "gable", "parapet", "chimney", "wall", "tower", "vertical-bending", "horizontal-bending", "building"
     ] = key(
-        about="kind of mechanism. Of one wall: facade, corner of two walls, gable, parapet or chimney on a "
+        about="kind of mechanism. For a part of a building: facade, corner of two walls, gable, parapet or chimney on a "
         "building, free-standing wall, tower as one body, vertical bending between floors, horizontal "
         "bending between side walls. `building`: the collapse mechanism of the [structure] of the deck "
         "(triumphal arches, bridges, vaults), or the walls of a building in plan"
@@ -289,7 +289,7 @@ class LocalMechanism(BuildingAnalysis):
     @model_validator(mode="after")
     def _one_building(self) -> "LocalMechanism":
         if self.modes and (given := sorted({"building_period", "storeys"} & self.model_fields_set)):
-            raise ValueError(f"{given[0]}: the key `modes` already gives this value: remove this key")
+            raise ValueError(f"{given[0]}: remove this key, because the key `modes` already gives its value")
         return self
 
     @model_validator(mode="after")

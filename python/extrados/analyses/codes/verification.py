@@ -192,7 +192,7 @@ def verify(
 
 def unverified(name: str) -> str:
     """The condition of a push that has no curve to be verified."""
-    return f"The capacity curve of pushover {name} has no rising branch. The least factor is that of the other pushovers."
+    return f"The capacity curve of pushover {name} has no rising branch. The least factor is calculated without this pushover."
 
 
 def _idealised(curve: CapacityCurve, options: Verification, jurisdiction: str) -> Oscillator | None:

@@ -357,7 +357,7 @@ def _by_pushovers(context: Context, options: FrameFragility, sample: Sample, sou
         return
     if not swept.complete:
         result.answer = (
-            f"{swept.finished} of {buildings} sampled buildings have a capacity curve. The fragility curves require that of all buildings."
+            f"{swept.finished} of {buildings} sampled buildings have a capacity curve. Fragility curves require those of all buildings."
         )
         return
     rows = swept.arrays
@@ -442,7 +442,7 @@ def _knowledge(
     share = float((drawn[np.isfinite(drawn)] < reached).mean())
     result.warnings.append(
         f"If all strengths are divided by the confidence factor {factor:.3g}, the building collapses at {reached:.3g} "
-        f"g under the median motion; {100 * share:.3g} % of the sampled buildings collapse at less."
+        f"g under the median motion. {100 * share:.3g} % of the sampled buildings collapse at a lower intensity."
     )
     return {"confidence_factor": factor, "design_intensity_g": reached, "weaker_share": share}
 

@@ -171,10 +171,7 @@ class FrameFragility(FrameMotion):
     )
     count: int | None = key(None, "number of motions; default 100, or the whole set", ge=2, le=1_000_000)
     seed: int | None = key(
-        None,
-        "seed of the random numbers, for the uncertain values and (instead of its own seed) for a generated set of motions",
-        ge=0,
-        le=2**62,
+        None, "seed of the random numbers for the uncertain values. It also replaces the seed of a generated set of motions", ge=0, le=2**62
     )
     intensity: Literal["pga", "sa"] = key("pga", "intensity measure of the motions. pga: PGA [g]; sa: SA(`sa_period`) [g]")
     sa_period: Time | None = key(None, "period of SA", gt=0)

@@ -42,6 +42,6 @@ def progress_of(context: Context, model: ShellModel, options: Pushover) -> Calla
             return
         left = (now - begun[0][0]) / (done - begun[0][1]) * max(total - done, 0.0)
         hours = f"{left / 3600:.1f} h" if left > 5400 else f"{left / 60:.0f} min" if left > 90 else f"{left:.0f} s"
-        context.progress(done, total, f"{text}; {model.weight / 1e3:.4g} kN weight; about {hours} more")
+        context.progress(done, total, f"{text}; {model.weight / 1e3:.4g} kN weight; about {hours} left")
 
     return tell

@@ -179,8 +179,8 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     groups += spring_groups(mesh.springs)
     if options.without_equilibrium not in ("load-unload", "continue") and any(np.isfinite(j.strength["friction"]) for j in mesh.joints):
         raise Refused(
-            'only "continue" and "load-unload" can follow joints that slide. Give the joints friction = '
-            '"no-sliding", or remove `without_equilibrium`',
+            'only the methods "continue" and "load-unload" can follow joints that slide. Give the joints '
+            'friction = "no-sliding", or remove `without_equilibrium`',
             ("analysis", "without_equilibrium"),
         )
     if options.without_equilibrium != "continue" and any(joint.floor for joint in mesh.joints):
@@ -294,7 +294,7 @@ def _tie(mesh: ShellMesh, options: Pushover, along: np.ndarray, held: set) -> li
             if tie.setdefault(node, share) != share:
                 raise BadGeometry(f"drives[{k}]: a node of wall '{drive.wall}' already has a different ratio")
     if clash := [n for n in tie if (n, axis) in held]:
-        raise BadGeometry(f"drives: node {clash[0] + 1} is restrained")
+        raise BadGeometry(f"drives: node {clash[0] + 1} is restrained and cannot move: impose the displacement at another place")
     return [(n, axis, share) for n, share in sorted(tie.items())]
 
 
@@ -347,8 +347,8 @@ def _grounds(mesh: ShellMesh, options: Pushover, held: set) -> tuple[list[list[t
         if not free:
             word = "wall" if mesh.walls else "foot"
             raise BadGeometry(
-                f"{what}: no support of {word} '{support.name}' at this place restrains it "
-                f"{'upright' if ground.way == 'down' else 'across'}"
+                f"{what}: at this place no support restrains {word} '{support.name}' in the direction `{ground.way}`, so "
+                "none can move: give another place or direction"
             )
         held -= {(n, d) for n, d, _ in free}
         grounds[ground] = len(ties)

@@ -50,7 +50,7 @@ def pier_strength(building: Building, options: Pushover) -> float:
     if not isinstance(building.structure, Plan):
         raise Refused("frame: piers require a building given by walls in plan", key)
     if options.drives:
-        raise Refused("frame: with `drives`, the distribution of the load over the storeys is not known", key)
+        raise Refused("frame: with `drives`, the distribution of the load over the storeys is not known: remove `frame`", key)
     strength = (options.frame and options.frame.compressive_strength) or building.material.compressive_strength
     if strength is None:
         raise Refused("frame: the formulas of piers require `compressive_strength` (f_m), in this table or in [material]", key)

@@ -179,7 +179,7 @@ def _stop(model: ShellModel, staged: ShellModel, stage: PushStage, now: float, n
         side = int(np.sign(target - now))
         if side == 0:
             raise Refused(
-                f"stages[{number}].target_displacement: at the start of this stage the control displacement is already {now:g} m",
+                f"stages[{number}].target_displacement: give another value. The control displacement is already {now:g} m when the stage starts",
                 ("analysis", "stages", number, "target_displacement"),
             )
     return core.Stop(

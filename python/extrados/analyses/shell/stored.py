@@ -10,6 +10,17 @@ from extrados.analyses.sla.kept import State
 from extrados.results.model import Array, Result, TableData
 from extrados.results.vtu import pvd, vtu
 
+#: Of each integration point: values of `place_axes`, and of `point_places`
+AXES = {"xyz": "its position", "x_axis": "x axis of its element (unit vector)", "y_axis": "y axis of its element (unit vector)"}
+PLACES = {
+    "part": "number of its part, among the parts that resist bending, counted from 0",
+    "wall": "number of the wall, counted from 0; -1: none",
+    "s": "distance along the wall from its start",
+    "z": "height",
+    "storey": "number of the storey, counted from 1",
+    "element": "number of its element in these parts, counted from 0",
+}
+
 
 def store_mesh(result: Result, model: ShellModel) -> None:
     """Nodes, elements of the walls and of the floors, and the places in the planes of the walls."""
@@ -27,17 +38,19 @@ def store_mesh(result: Result, model: ShellModel) -> None:
             np.array([int(part.bends)]), ("one",), "", f"whether {part.name} resists bending; a floor does not", "bends"
         )
     walls = np.array([[*w.origin, *w.along, w.length] for w in mesh.walls]).reshape(-1, 5)
-    result.arrays["wall"] = Array(walls, ("walls", "wall_row"), "m", "origin and direction in plan, and length")
-    result.arrays["level"] = Array(mesh.levels, ("levels",), "m", "heights of the ground and the storeys")
+    result.arrays["wall"] = Array(
+        walls, ("walls", "wall_row"), "m", "of each wall: x and y of its start, direction in plan (unit vector), and length"
+    )
+    result.arrays["level"] = Array(mesh.levels, ("levels",), "m", "heights of the ground and of the top of each storey")
     if not mesh.walls:
         for name, values in place_axes(model).items():
             unit = "m" if name == "xyz" else ""
             result.arrays[f"place_{name}"] = Array(
-                values, ("places", "axis"), unit, f"value at the integration points of the shells: {name}"
+                values, ("places", "axis"), unit, f"for each integration point of the shells: {AXES[name]}"
             )
     for name, values in point_places(model).items():
         unit = "m" if name in "sz" else ""
-        result.arrays[f"place_{name}"] = Array(values, ("places",), unit, f"value at the integration points of the walls: {name}")
+        result.arrays[f"place_{name}"] = Array(values, ("places",), unit, f"for each integration point of the walls: {PLACES[name]}")
 
 
 def store_seats(result: Result, model: ShellModel, curve: Curve, prefix: str) -> None:
@@ -45,7 +58,7 @@ def store_seats(result: Result, model: ShellModel, curve: Curve, prefix: str) ->
     if model.seats and len(curve.events):
         slips = np.column_stack([slip[:, 0] for slip in model.slips(curve.events.monitors)])
         result.arrays[f"{prefix}event_seat_slip"] = Array(
-            slips, (f"{prefix}events", "seats"), "m", "greatest displacement of an end of a floor away from each of its seats"
+            slips, (f"{prefix}events", "seats"), "m", "for each seat: greatest displacement of the end of the floor away from it"
         )
 
 

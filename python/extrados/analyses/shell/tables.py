@@ -196,8 +196,8 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
         "continue",
         'method after an event for which no load is admissible at all points (see sla). "continue": '
         "equilibrium iterations in displacement control (for rotating cracks, and for joints that slide "
-        'from the first load on). "load-unload": loads A remain, and the greatest lower limit decides; '
-        "this is the default with stages",
+        'from the first load on). "load-unload" (default with stages): the constant loads remain, and the '
+        "point with the greatest lower limit of the load determines the next event",
         source="thesis 4.3.1",
     )
     continuation: Literal["newton", "steps", "implicit-explicit", "dissipation"] = key("newton", "equilibrium iterations, see sla")
@@ -264,7 +264,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
         if len({variant.name for variant in self.variants}) < len(self.variants):
             raise ValueError("variants: a name occurs twice")
         if self.shear_retention is not None and self.cracking == "isotropic":
-            raise ValueError("isotropic cracking has no shear retention")
+            raise ValueError("isotropic cracking has no shear retention: remove `shear_retention`")
         if self.verification.model_fields_set and (self.stages or self.drives):
             raise ValueError("the key `verification` requires a single load by inertia forces: remove `stages` and `drives`")
         return self

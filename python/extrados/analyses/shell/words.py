@@ -42,7 +42,7 @@ def answer_of_push(building: Building, options: Pushover, numbers: dict[str, Any
 def _stage_told(stage: dict[str, Any]) -> str:
     end = stage["end_load_N"]
     if end is None:
-        return f"{stage['name']} without a state in equilibrium"
+        return f"{stage['name']}, no equilibrium state found"
     if stage["of"] == "settlement":
         return f"{stage['name']}, settlement of the ground: {stage['damaged_points']} integration points crack"
     return f"{stage['name']}, load towards {stage['sense']}, ends at {end / 1e3:.4g} kN ({stage['stop']})"
@@ -103,7 +103,7 @@ def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any
         flanges = curve["flanges"]
         text += (
             f"; transverse walls {'act as flanges' if flanges['working'] else 'hardly act as flanges'} "
-            f"({flanges['uplift_N'] / 1e3:.3g} kN up, {flanges['pressure_N'] / 1e3:.3g} kN down)"
+            f"({flanges['uplift_N'] / 1e3:.3g} kN up and {flanges['pressure_N'] / 1e3:.3g} kN down at their feet)"
         )
     moved = [row for row in curve.get("joints", []) if row["broken_share"] > 0.0]
     for row in sorted(moved, key=lambda row: -max(row["last_slip_m"], row["last_opening_m"]))[:3]:

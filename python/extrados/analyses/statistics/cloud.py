@@ -73,7 +73,7 @@ def describe(
         if np.isnan(region.median).any():
             result.warnings.append(
                 f"The motions do not show that the probability of collapse increases with {name}: a constant probability lies within the "
-                f"{100.0 * confidence:.3g} % region. The fitted median and dispersion are not determined. Use more motions, or another "
+                f"{100.0 * confidence:.3g} % confidence region. The fitted median and dispersion are not determined. Use more motions, or another "
                 "`intensity`."
             )
         result.answer += (

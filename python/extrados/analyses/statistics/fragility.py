@@ -615,6 +615,6 @@ def _describe_durations(options: Fragility, base: Rocker, parts: list[tuple[floa
         if row["count"]
     )
     result.answer = (
-        f"Results for each duration of the motion ({(rows[0]['count'] if rows else 0)} each), rotations "
+        f"Results for each duration of the motion ({(rows[0]['count'] if rows else 0)} motions each), rotations "
         f"divided by the critical rotation (collapse counts as 1): {text}."
     )

@@ -55,9 +55,8 @@ def handed_of(context: Context, options: Fragility, base: Rocker, sample: Sample
     contacts = contacts_of(base, context.building, options.form == "linear")
     if contacts is None:
         raise Refused(
-            "this building cannot be followed with rigid contacts, because a wall, an added hinge or a "
-            "Winkler bed acts on it, or because its joints are not checked (piers without blocks, or form = "
-            '"linear")',
+            "rigid contacts cannot continue runs of this building: a wall, an added hinge or a Winkler bed acts on it, "
+            'or its joints are not checked (piers without blocks, or form = "linear"). Remove `hand_over`',
             ("analysis", "hand_over"),
         )
     return Handed(Fates.of(context, contacts), sample)

@@ -120,14 +120,14 @@ def fit(seen: Capacities) -> Lognormal:
     if len(seen.ends) < 2:
         raise NoFit("a curve requires at least two intensities")
     if not len(low) or not np.isfinite(high).any():
-        raise NoFit("nothing happened at any intensity")
+        raise NoFit("the observed probability is 0 at every intensity")
     if not low.any():
-        raise NoFit("the event occurred in every run at every intensity")
+        raise NoFit("the observed probability is 1 at every intensity")
     if low.max() <= high.min():
         raise NoFit(
-            f"a step between {low.max():.4g} and {high.min():.4g} separates all runs without collapse from all runs with collapse, so the dispersion cannot be estimated"
+            f"the observed probability jumps from 0 at {low.max():.4g} to 1 at {high.min():.4g}, so the dispersion cannot be estimated"
             if low.max() < high.min()
-            else f"a step at {low.max():.4g} separates all runs without collapse from all runs with collapse, so the dispersion cannot be estimated"
+            else f"the observed probability jumps from 0 below {low.max():.4g} to 1 above it, so the dispersion cannot be estimated"
         )
     a, b = _greatest(low, high, weight[None, :])
     if not b[0] * np.log(seen.ends[-1] / seen.ends[0]) > FLAT:

@@ -43,7 +43,8 @@ def needs(context: Context, options: RockingTable) -> Iterator[Need]:
 def _refuse_of_spectra(building: Building) -> None:
     if building.joints.energy_ratio is not None:
         raise Refused(
-            "for these blocks the spectrum uses restitution, which is the square root of the energy ratio", ("joints", "energy_ratio")
+            "a spectrum of blocks uses `restitution`, not `energy_ratio`: give restitution = square root of the energy ratio",
+            ("joints", "energy_ratio"),
         )
     if building.supports.stiffness is not None:
         raise Refused(
@@ -100,7 +101,7 @@ def _refuse_motions(context: Context, options: tables.Fragility) -> None:
     from extrados.motions.tables import Generated
 
     if options.durations is not None and not isinstance(context.deck.motion, Generated):
-        raise Refused("this requires a [motion] of kind 'generated'", ("analysis", "durations"))
+        raise Refused("the key `durations` requires a [motion] of kind 'generated'", ("analysis", "durations"))
     refuse_few_motions(context, options.count, bool(options.uncertain))
 
 
@@ -111,5 +112,6 @@ def refuse_few_motions(context: Context, count: int | None, uncertain: bool) -> 
     there = how_many(context)
     if there is not None and count is not None and count > there and not uncertain:
         raise Refused(
-            f"{count}, but the deck has {there} motion{'s' if there > 1 else ''}: expected at most {there}", ("analysis", "count")
+            f"the key `count` is {count}, but the deck has {there} motion{'s' if there > 1 else ''}: give at most {there}",
+            ("analysis", "count"),
         )

@@ -230,7 +230,7 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
             table,
             ("aspect", "initial_ratio"),
             "",
-            "lowest limit of the acceleration at which the rotation grows, divided by the uplift acceleration",
+            "least cap of the ground acceleration with which the rotation grows, divided by the uplift acceleration",
         ),
         "impulse_period_ratio": Array(np.array(IMPULSE_PERIODS), ("impulse_period_ratio",), "", "T_p/T_n"),
         "impulse_rotation": Array(
@@ -241,13 +241,13 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
             by_period,
             ("impulse_period_ratio", "impulse_start"),
             "",
-            "energy supplied divided by the energy at the start; start at a quarter of the critical rotation",
+            "energy supplied by the impulse, divided by the initial energy; initial rotation: a quarter of the critical rotation",
         ),
         "energy_by_rotation": Array(
             by_rotation,
             ("impulse_rotation", "impulse_start"),
             "",
-            "energy supplied divided by the energy at the start; impulse of half the natural period (T_p = T_n/2)",
+            "energy supplied by an impulse of half the natural period (T_p = T_n/2), divided by the initial energy",
         ),
     }
     numbers |= {
@@ -256,7 +256,7 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
     }
     if least is not None:
         result.answer += (
-            f" From this start, any limit of the acceleration above {least:.3f} g ({least / model.uplift:.2f} times "
+            f" From this start, any cap of the ground acceleration above {least:.3f} g ({least / model.uplift:.2f} times "
             f"the uplift acceleration) makes the rotation grow until the {model.word} overturns."
         )
     return numbers

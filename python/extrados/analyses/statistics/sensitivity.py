@@ -115,4 +115,4 @@ def spoken(sensitivity: dict[str, out.Sensitivity]) -> str:
         return "No uncertain value matters: the greatest rotation is the same in all runs."
     order = sorted(known, key=lambda name: -known[name])
     said = ", ".join(f"{name} {100 * known[name]:.0f} %" for name in order)
-    return f"Share of each value in the variance of the greatest rotation (total Sobol indices): {said}."
+    return f"Share of each uncertain value in the variance of the greatest rotation (total Sobol indices): {said}."

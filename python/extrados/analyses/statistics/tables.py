@@ -42,7 +42,7 @@ class Hazard(Table):
     )
     annual_rates: list[Rate] | None = key(
         None,
-        "mean annual rates at which the `intensities` are exceeded, in decreasing order; interpolated linearly between logarithms",
+        "mean annual rates at which the `intensities` are exceeded, in decreasing order; interpolated linearly in the logarithms",
         min_length=2,
         max_length=1000,
     )
@@ -50,7 +50,7 @@ class Hazard(Table):
         None, "CSV file with both columns, instead of `intensities` and `annual_rates`; lines that begin with # are ignored"
     )
     years: float = key(50.0, "number of years for which the probability of collapse is given", gt=0, le=1e5)
-    acceptable_rate: Rate | None = key(None, "annual rate of collapse that is acceptable: the demand of the verdict")
+    acceptable_rate: Rate | None = key(None, "acceptable annual rate of collapse. The verdict compares the calculated rate with this value")
 
     @model_validator(mode="after")
     def _curve(self) -> "Hazard":
@@ -83,14 +83,11 @@ class Fragility(RockingTable):
     starter_motion: ClassVar = "generated"
     count: int | None = key(None, "number of motions; default 1000, or the whole set", ge=1, le=10_000_000)
     seed: int | None = key(
-        None,
-        "seed of the random numbers, for the uncertain values and (instead of its own seed) for a generated set of motions",
-        ge=0,
-        le=2**62,
+        None, "seed of the random numbers for the uncertain values. It also replaces the seed of a generated set of motions", ge=0, le=2**62
     )
     durations: list[Time] | None = key(
         None,
-        "durations t_d of the motions of a generated set, for each of which the analysis is repeated",
+        "durations t_d of the generated motions. The analysis is repeated for each duration",
         source="thesis Fig. 6-8",
         min_length=1,
         max_length=100,
@@ -138,8 +135,8 @@ class Fragility(RockingTable):
     )
     hand_over: bool = key(
         False,
-        "if joints slide or hinges form at other joints, continue this run with rigid contacts; false "
-        "gives the share of these runs in a warning",
+        "if joints slide or hinges form at other joints than those of the mechanism, continue the run with rigid "
+        "contacts; if false, a warning states the share of such runs",
         source="Moreau 1988",
     )
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
@@ -229,9 +226,9 @@ class Resonance(RockingTable):
     kind: Literal["resonance"]
     considers: ClassVar = ()
     cap: Acceleration | None = key(
-        None, "limit of the ground acceleration; default: 0.6 times the uplift acceleration", gt=0, source="thesis Eq. 6.5"
+        None, "cap (greatest value) of the ground acceleration; default: 0.6 times the uplift acceleration", gt=0, source="thesis Eq. 6.5"
     )
-    half_cycles: int = key(40, "at most so many", ge=1, le=400)
+    half_cycles: int = key(40, "greatest number of half cycles", ge=1, le=400)
     impulse_amplitude: Acceleration | None = key(
         None, "amplitude of the impulses of Fig. 6-4; default: half of the uplift acceleration", gt=0, source="thesis 6.2.3"
     )

@@ -60,9 +60,7 @@ def _refuse(text: str, key: tuple[str | int, ...]) -> None:
 
 def _refuse_directions(options: Strengthen) -> None:
     if options.directions:
-        raise Refused(
-            "the key `directions` is only for blocks in space: to analyse the blocks in space, give `direction`", ("analysis", "directions")
-        )
+        raise Refused("the key `directions` is only for blocks in space: for a plane section, give `direction`", ("analysis", "directions"))
 
 
 def _refuse_without_peak(context: Context) -> None:

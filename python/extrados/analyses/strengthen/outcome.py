@@ -38,10 +38,7 @@ def arrays_of(context: Context, before: Worth, sized: list[Sized]) -> dict[str, 
             "sufficient at this place",
         ),
         **packed(
-            "stones",
-            rest,
-            "m",
-            "blocks of the existing building (number 0/block) and with each alternative (number of the alternative/block)",
+            "stones", rest, "m", "blocks of the existing building (named 0/block) and of the building with each alternative (number/block)"
         ),
         **packed("stones_moved", moved, "m", "the same blocks, displaced by the governing mechanism"),
     }

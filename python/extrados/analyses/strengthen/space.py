@@ -194,12 +194,12 @@ class SpaceStatics(Statics):
 def refuse_in_space(context: Context, options: Strengthen) -> None:
     """Refused where a deck asks in space for what is known in a plane section alone."""
     wrong: dict[str, tuple[bool, Any]] = {
-        "the key `direction` is only for plane sections: give directions": (options.direction != "both", ("analysis", "direction")),
-        "friction_rule: in space, ties are sized for dilatant sliding only": (
+        "the key `direction` is only for plane sections: give `directions`": (options.direction != "both", ("analysis", "direction")),
+        "friction_rule: in space, ties are sized for dilatant sliding only. Remove `friction_rule`": (
             options.friction_rule != "associated",
             ("analysis", "friction_rule"),
         ),
-        "compressive_strength: limit analysis in space neglects crushing": (
+        "compressive_strength: limit analysis in space neglects crushing. Remove `compressive_strength`": (
             context.building.material.compressive_strength is not None,
             ("material", "compressive_strength"),
         ),

@@ -57,8 +57,8 @@ class TieOption(Tie):
     source the deck states.
     """
 
-    start_to: Place | None = key(None, "second end of the range of `start`")
-    far_to: Place | None = key(None, "second end of the range of `end` or `ground`")
+    start_to: Place | None = key(None, "end of the range of places that begins at `start`")
+    far_to: Place | None = key(None, "end of the range of places that begins at `end` or `ground`")
     places: int = key(9, "number of places considered in the range", ge=2, le=200)
     debonding_force: Force | None = key(
         None, "for a bonded FRP or FRCM strip: design force at which it debonds, which is the greatest force considered", gt=0
@@ -90,15 +90,19 @@ class TieOption(Tie):
         if any(len(point) != len(self.start) for point in (self.start_to, self.far_to) if point is not None):
             raise ValueError("`start_to` and `far_to`: expected the same number of coordinates as in `start`")
         if "places" in self.model_fields_set and self.start_to is None and self.far_to is None:
-            raise ValueError("the key `places` requires `start_to` or `far_to`, the second end of the range")
+            raise ValueError("the key `places` requires `start_to` or `far_to`, the end of the range")
         if self.debonding_force is not None and self.source is None:
             raise ValueError("`debonding_force` requires its source: the document with the formula, or the test")
         if self.source is not None and self.debonding_force is None:
             raise ValueError("the key `source` is used only with `debonding_force`: remove `source`")
         if self.debonding_force is not None and (self.yield_force is not None or self.works_in != "tension"):
-            raise ValueError("debonding_force: a bonded strip acts in tension and has no `yield_force`")
+            raise ValueError(
+                "debonding_force: a bonded strip acts only in tension, up to `debonding_force`: remove `yield_force` and `works_in`"
+            )
         if self.prestress:
-            raise ValueError("prestress: the analysis calculates the force of the tie, and plastic collapse does not depend on prestress")
+            raise ValueError(
+                "prestress: remove this key. The analysis calculates the tie force, and plastic collapse does not depend on `prestress`"
+            )
         return self
 
     def at(self, share: float) -> Tie:
@@ -117,7 +121,7 @@ class TieOption(Tie):
 class Change(Table):
     """A number of the deck that is changed: a thickness, a buttress, a base width, a strength after injection, a damper."""
 
-    name: str | None = key(None, "name of the intervention; default: the key", max_length=80)
+    name: str | None = key(None, "name of the intervention; default: the value of `vary`", max_length=80)
     vary: str = key(
         about="key of the deck with its table, for instance structure.buttress_width, material.compressive_strength, "
         "joints.friction or dampers.0.damping; for a key of the options below, begin with `options.`"
@@ -161,7 +165,7 @@ class Strengthen(LimitAnalysisTable):
     by: Literal["tilt", "local-mechanism", "code-checks", "rocking", "fragility", "dem"] = key(
         "tilt", "analysis that gives the value of the target; with tilt, the tie force follows from one linear programme"
     )
-    options: dict[str, Any] = key({}, "keys of the table of this analysis")
+    options: dict[str, Any] = key({}, "keys of the analysis that `by` names, as in the table of that analysis")
     direction: Literal["both", "+x", "-x"] = key(
         "both", "direction of the load for limit analysis; default with an abutting wall: away from the wall"
     )
@@ -191,7 +195,7 @@ class Strengthen(LimitAnalysisTable):
         if self.acceleration is not None and self.by != "tilt":
             raise ValueError(f'the target `acceleration` requires by = "tilt"; with by = "{self.by}", give a `safety_factor`')
         if self.by == "tilt" and self.options:
-            raise ValueError('options: with by = "tilt", give these keys in this table instead')
+            raise ValueError('options: with by = "tilt", give the keys of this table directly in the table of the analysis')
         if "levels" in self.model_fields_set and not self.fragility:
             raise ValueError("levels: needs fragility = true")
         if "budget" in self.model_fields_set and not self.assess:

@@ -53,9 +53,7 @@ def read(text: Lines, columns: Columns | None = None) -> list[Record]:
         step, rounded, notes, data, names = _stated_step(text, said), 0.0, [], values[:, None], []
         for stride in range(1, max(4, width) + 1):
             if _ascends(values[::stride]):
-                what = (
-                    "the values increase like times" if stride == 1 else f"the values at a distance of {stride} places increase like times"
-                )
+                what = "the values increase like times" if stride == 1 else f"values that are {stride} places apart increase like times"
                 raise text.error(rows[0][0], f"{what}: give time and acceleration in two columns")
     elif short:
         last = f"the last line has {len(rows[-1][1])} columns, but the lines above have {width}"
