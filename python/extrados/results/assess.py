@@ -19,12 +19,12 @@ class AssessHazard(ResultModel):
     kind: str = fact("kind of [motion]")
     told: str = fact("in words")
     motions: int = fact("number of motions")
-    member: int = maybe("number (counted from 1), in the set of motions, of the motion that strategies with a single motion use")
+    member: int = maybe("for strategies that use one motion only: its number in the set of motions, counted from 1")
     chosen_by: str = maybe("rule that selected this motion from the set")
     peak_ground_acceleration_g: float = fact("peak ground acceleration: the demand for strategies that apply a constant acceleration", "g")
     peak_told: str = fact("source of that peak")
     pulse_amplitude_g: float | None = fact("amplitude of the primary impulse; null if the motion has none", "g")
-    pulse_period_s: float | None = fact("its period; null: none", "s")
+    pulse_period_s: float | None = fact("period of the primary impulse; null if the motion has none", "s")
 
 
 class StrategyVerdict(ResultModel):
@@ -155,16 +155,18 @@ class CollapseProbability(ResultModel):
     The first comes from the model uncertainty of the strategies. The second is a count of dynamic runs.
     """
 
-    in_motion: CollapseInMotion = maybe("probability of collapse by rocking under the motion itself")
+    in_motion: CollapseInMotion = maybe("probability of collapse under the motion itself: share of the rocking runs that collapse")
     probability: float | None = fact(
         "probability of collapse if the peak acceleration acts as a constant horizontal acceleration: weighted mean over the "
         "strategies; 1 if a certificate proves collapse; null if no strategy contributes"
     )
     low: float | None = fact(
-        "lowest lower end of the 90 % confidence intervals of all strategies that contribute; null if no strategy contributes"
+        "lower end of the interval of `probability`: least of the lower ends of the 90 % confidence intervals of the strategies that "
+        "contribute; null if no strategy contributes"
     )
     high: float | None = fact(
-        "highest upper end of the 90 % confidence intervals of all strategies that contribute; null if no strategy contributes"
+        "upper end of the interval of `probability`: greatest of the upper ends of the 90 % confidence intervals of the strategies that "
+        "contribute; null if no strategy contributes"
     )
     contributions: list[Contribution] = fact("strategies whose capacity is compared with known results in the verification book")
     without: dict[str, str] = fact("strategies that do not contribute to the probability, each with the reason")
@@ -182,7 +184,7 @@ class Advice(ResultModel):
     mechanism: str = fact("governing collapse mechanism of the existing building")
     interventions: list[Intervention] = fact("alternative interventions; the cheapest that reaches the target comes first")
     by_rocking: Intervention = maybe(
-        "the first tie of `interventions`, with its force changed to the least one at which the building survives rocking under the hazard"
+        "the first tie of `interventions`, with the least yield force at which the building survives rocking under the hazard"
     )
     rocking: dict[str, str] = fact("outcome of rocking under the hazard, for each intervention that reaches the target")
     statement: str = fact("recommendation in words")
@@ -208,7 +210,7 @@ class Assess(KindResults):
     probes: list[Probe] = fact("further runs")
     sensitivity: list[TurningValue] = maybe("sensitivity of the verdicts to each uncertain value; the most decisive value comes first")
     advice: Advice = maybe("strengthening, if not all strategies give the verdict `stands`")
-    not_done: list[str] = fact("steps that were omitted because the time `budget` was used up, and additional runs that decided nothing")
+    not_done: list[str] = fact("steps that were omitted or gave no result, for instance because the time `budget` was used up")
     least_margin: float | None = fact(
         "lowest critical scale factor of the hazard among all strategies; 0 if the building cannot stand; null if no factor is known"
     )

@@ -201,7 +201,7 @@ class WallMechanism(ResultModel):
     storey: int = fact(
         "number (counted from 1) of the storey at whose foot the wall rotates; for a gable, the number of the top storey plus one"
     )
-    foot_m: float = fact("height of the foot of this storey above the ground", "m")
+    foot_m: float = fact("height above the ground of the foot about which the wall or the gable rotates", "m")
     multiplier: float = fact("alpha_0")
     activation_acceleration_g: float = fact("a_0*", "g")
     zero_displacement_m: float | None = fact("d_0*; null: none", "m")
@@ -243,7 +243,7 @@ class LocalMechanism(Checked):
     )
     multiplier_associated: float = maybe(
         "if joints slide: alpha_0 with associated (dilatant) friction. The capacity lies between "
-        "`multiplier` (lowest certified state) and this value",
+        "`multiplier` (the lowest certified collapse state) and this value",
         source="Drucker 1954",
     )
 

@@ -18,7 +18,8 @@ CollapseCriterion = Literal["rotation", "loss of height", "loss of support", "se
 #: the joint, and so half of the resistance to overturning, is left then
 SLIP_LIMIT = 0.25
 INTERVAL = (
-    "whether blocks slide before collapse at statically indeterminate joints; the collapse acceleration is then one value of an interval"
+    "whether blocks slide before collapse at statically indeterminate joints. If so, the collapse "
+    "acceleration depends on the load path, and a lower value may exist"
 )
 #: What a contact of solids does, in the stored array `state`: CLOSED, open at some corners, APART
 ROCKS = 1
@@ -86,7 +87,7 @@ class BlocksRun(KindResults):
 
     outcome: DemOutcome = fact("outcome: no joint opens or slides; joints slide; joints open and the blocks stand; or collapse")
     collapse_criterion: CollapseCriterion | None = fact(
-        "criterion of collapse, if collapse was found by another criterion than the displacement; null without collapse"
+        "criterion of collapse, in addition to the displacement: rotation, loss of height, loss of support or separation; null without collapse"
     )
     governing_block: str = fact("block that collapsed first; without collapse, the block that moved farthest")
     collapse_time_s: float | None = fact("when the first block collapsed", "s")
@@ -268,7 +269,7 @@ class SolidDemRun(BlocksRun):
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     dowels: int = fact("dowels across contacts")
-    dowel_slip_m: float = fact("greatest plastic slip of a dowel, with the slip under self-weight before the motion", "m")
+    dowel_slip_m: float = fact("greatest plastic slip of a dowel, including the slip under self-weight before the motion", "m")
     dowels_out: int = fact("number of dowels that came out of their holes")
     final_displacement_m: float = fact("greatest displacement of a block at the end of the run", "m")
     peak_opening_m: float = fact("greatest gap at a corner of a contact that is still closed elsewhere", "m")
@@ -296,7 +297,7 @@ Dem = DemRun | DemTilt | SolidDemRun | SolidDemTilt
 class DemCurve(ResultModel):
     """Shortest failing durations with one set of joints, by one solver."""
 
-    label: str = fact("name of the value that was varied, or name of the other solver")
+    label: str = fact("name of the curve: the value that was varied, or the second solver")
     solver: Literal["compliant", "nonsmooth"] = fact(
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )

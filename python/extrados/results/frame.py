@@ -69,11 +69,11 @@ class FramePush(ResultModel):
 
     name: str = fact("direction, pattern and eccentricity")
     direction_deg: float = fact("on the plan", "deg")
-    sense: Literal["+", "-"] = fact("sense of the load. +: along the direction; -: against it")
+    sense: Literal["+", "-"] = fact("sense of the load. +: in the direction `direction_deg`; -: in the opposite direction")
     pattern: str = fact("of the forces")
     eccentricity: float = fact("accidental eccentricity, divided by the length of the building perpendicular to the load")
     stop: str = fact("why it ended")
-    lost_at: str = maybe("if no equilibrium was found: place where the frame moves most at the end")
+    lost_at: str = maybe("if the run ends without equilibrium: the node or wall that moves most, in words")
     control_displacement_m: list[float] = fact(
         "mean displacement of the masses on the control level, positive in the direction of the load", "m"
     )
@@ -122,8 +122,8 @@ class WallDeflection(ResultModel):
     height_m: float = fact("height above the ground at which the deflection is greatest", "m")
     reached: bool = fact("whether the acceleration decreases with further deflection; if not, the acceleration is a lower bound")
     rigid_acceleration_g: float | None = fact(
-        "collapse multiplier of the weakest rigid part of the wall above a storey (local-mechanism, without confidence factor, same "
-        "position of the hinge); null if floors restrain the wall, or with a warning",
+        "least collapse multiplier of the wall as a rigid body that rotates out of its plane about the foot of a storey (local-mechanism, "
+        "without confidence factor); null if floors restrain the wall, or if a warning says that the multiplier is not calculated",
         "g",
     )
     held_at_m: list[float] = fact("heights at which rigid floors or props restrain the wall", "m")
@@ -204,9 +204,9 @@ class FrameLimitCurve(ResultModel):
 
     limit_state: FrameLimitState = fact("strength, first-limit or collapse")
     exceeded: int = fact(
-        "number of runs that exceed the limit state; of pushovers, number of buildings that exceed it under their unscaled motion"
+        "number of runs that exceed the limit state; for pushovers, number of sampled buildings that exceed it under their unscaled motion"
     )
-    share: float = fact("share of the runs that have a result")
+    share: float = fact("share of the runs with a result that exceed the limit state")
     share_interval: list[float] = fact("interval of that share (Wilson)")
     median_g: float | None = fact("median of the lognormal fragility curve; null if the runs are not enough to fit a curve", "g")
     dispersion: float | None = fact("its logarithmic standard deviation")
@@ -238,14 +238,14 @@ class FrameFragility(KindResults):
         "intensity of the median motion at which the building collapses, with all strengths divided by the confidence factor", "g"
     )
     weaker_share: float = maybe(
-        "share of the sampled buildings that collapse, under the same motion, at a lower intensity than `code_median_g`"
+        "share of the sampled buildings that collapse under the median motion at an intensity below `design_intensity_g`"
     )
 
     def judged(self, demand: Demand) -> Verdict:
         """Probabilities, which decide no limit state without an accepted one."""
         worst = self.limit_states[-1]
         median = f"The median {self.intensity} at collapse is {worst.median_g:.3g} g" if worst.median_g else "No curve of collapse"
-        text = f"{median}; {worst.exceeded} runs exceed collapse."
+        text = f"{median}; {worst.exceeded} runs exceed the limit state of collapse."
         return judge(text, None, None, "", "not-applicable")
 
 

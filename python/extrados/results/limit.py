@@ -132,9 +132,9 @@ class NonDilatant(ResultModel):
         "g",
         source="Drucker 1954",
     )
-    starts_g: list[float] = fact("collapse load found from each starting point; the lowest is the result", "g")
+    starts_g: list[float] = fact("collapse acceleration found from each starting point of the search; the lowest is the result", "g")
     spread_g: float = fact(
-        "difference between the highest and the lowest collapse load found; collapse states without dilatancy are not unique", "g"
+        "difference between the highest and the lowest value of `starts_g`; collapse states without dilatancy are not unique", "g"
     )
     certified: bool = fact(
         "whether the certificate is satisfied, recalculated independently of the solver: equilibrium, "
@@ -142,7 +142,7 @@ class NonDilatant(ResultModel):
     )
     zero_gap_g: float = fact(
         "gap: collapse acceleration minus (work of friction minus work of the weight), per unit of work "
-        "of the load; zero if forces and motion belong to the same state",
+        "of the load; zero if the forces and the mechanism belong to one collapse state",
         "g",
     )
     equilibrium_residual: float = fact("greatest unbalanced force on a block (or moment divided by the size), divided by the total load")
@@ -170,7 +170,7 @@ class Tilt(KindResults):
     admissible_interval_g: list[float] = fact("accelerations between which an admissible thrust line exists", "g")
     load_direction: Literal["+x"] = fact("direction of the load (+x or -x) for which hinges and friction are given")
     hinges: list[Hinge] = fact("hinges of the mechanism")
-    sliding_joints: list[int] = fact("joints that slide or open in the collapse mechanism")
+    sliding_joints: list[int] = fact("joints that slide or open in the collapse mechanism towards +x")
     hinges_opposite: list[Hinge] = fact("hinges of the collapse mechanism towards -x")
     dilating_joints: list[int] = maybe(
         "joints in compression that slide in the collapse mechanism towards +x. The collapse acceleration is then an "
@@ -179,7 +179,7 @@ class Tilt(KindResults):
     dilating_joints_opposite: list[int] = maybe("joints in compression that slide in the collapse mechanism towards -x")
     collapse_acceleration_non_associated_g: float = maybe(
         "collapse acceleration towards +x for sliding without dilatancy: the lowest of the certified "
-        "states that were found. It is one value of an interval whose upper end is the associated value",
+        "states that were found. The possible values form an interval; its upper end is the value with dilatant (associated) friction",
         "g",
         source="Ferris and Tin-Loi 2001",
     )
@@ -209,12 +209,12 @@ class Tilt(KindResults):
     ties: list[TieForce] = maybe("forces of the ties at collapse")
     ties_opposite: list[TieForce] = maybe("forces of the ties at collapse under load towards -x")
     thrust_min_N: float = maybe(
-        "minimum horizontal thrust of the first arch under vertical loads only: at its left springing "
+        "minimum horizontal thrust, under vertical loads only, of the first arch in `thrusts`: at its left springing "
         "or, for an arch with ties, at its crown",
         "N",
     )
     thrust_max_N: float = maybe(
-        "maximum horizontal thrust of the first arch under vertical loads only: at its left springing "
+        "maximum horizontal thrust, under vertical loads only, of the first arch in `thrusts`: at its left springing "
         "or, for an arch with ties, at its crown",
         "N",
     )
@@ -230,7 +230,7 @@ class Tilt(KindResults):
     left_aisle_span_m: float = maybe("clear span of the left aisle", "m")
     right_aisle_span_m: float = maybe("clear span of the right aisle", "m")
     duality_gap: float = fact("greatest difference between the lower bound (from equilibrium) and the upper bound (from a mechanism)", "g")
-    fracture: Fracture = maybe("collapse with the leeward buttress cracked")
+    fracture: Fracture = maybe("results of the collapse towards +x with the leeward buttress cracked")
     non_dilatant: NonDilatant = maybe("sliding without dilatancy, collapse towards +x: bounds and certificate")
     non_dilatant_opposite: NonDilatant = maybe("sliding without dilatancy, collapse towards -x: bounds and certificate")
 
@@ -444,7 +444,7 @@ class MovingLoad(KindResults):
         "the analysis assumes dilatant (associated) friction"
     )
     greatest_compression_N: float = fact("greatest compression across a joint at collapse, with the load at the governing position", "N")
-    places_without_limit: int = fact("positions at which a load of this kind never causes collapse")
+    places_without_limit: int = fact("number of positions at which no multiple of the load causes collapse")
     ties: list[TieForce] = maybe("forces of the ties at collapse, with the load at the governing position")
     duality_gap: float = fact(
         "greatest difference, over all positions, between the lower bound (from equilibrium) and the "
@@ -453,7 +453,9 @@ class MovingLoad(KindResults):
     load_N: float = maybe("load given in the deck", "N")
     safety_factor: float = maybe("collapse load, divided by the load given in the deck")
     train: str = maybe('name of the train. "load": one total force, divided among the axles; "train": the deck gives the load of each axle')
-    adequacy_factor: float = maybe("factor on the factored train (or load) at which the bridge collapses")
+    adequacy_factor: float = maybe(
+        "adequacy factor: multiple of the train or load (with partial and dynamic factors) at which the bridge collapses"
+    )
     live_load_factor: float = maybe(
         "live-load factor (partial factor times dynamic factor), with which the train is multiplied "
         "before the adequacy factor is calculated"
@@ -532,9 +534,7 @@ class MovingSupports(KindResults):
     thrust_at_fall_N: float = maybe("horizontal thrust at collapse", "N")
     hinges_at_rest: list[JointHinge] = maybe("the three hinges at the start of the movement")
     hinges_at_fall: list[JointHinge] = maybe("the three hinges at collapse")
-    joints_touched_at_fall: list[int] = maybe(
-        "joints, besides the hinges, at one end of which the thrust line touches the edge at collapse"
-    )
+    joints_touched_at_fall: list[int] = maybe("joints without a hinge in which the thrust line reaches an end of the joint at collapse")
     stages: list[Stage] = maybe("stages of the movement: the start, and each change of hinges")
     openings: list[JointOpening] = maybe("joints that open or slide under [[initial.movements]]; the widest comes first")
     work_J: float = maybe("work of the weight during the movements of [[initial.movements]]", "J")
@@ -606,7 +606,7 @@ class Sweep(KindResults):
     mechanisms: list[GoverningMechanism] = fact("the mechanisms that govern somewhere")
     changes: list[Change] = fact("values of the key at which another mechanism begins to govern")
     stable_limits: list[float] = fact("least and greatest value of the key (in its unit) with which the structure stands")
-    locked_limits: list[float] = fact("values of the key beyond which a load of this kind never causes collapse")
+    locked_limits: list[float] = fact("values of the key at which locking (no collapse mechanism exists) begins or ends")
     optimum_value: float = fact("value of the key with the greatest capacity, in the unit of the key")
     optimum_collapse_acceleration_g: float = fact("the greatest capacity", "g")
     optimum_tilt_angle_deg: float = fact("tilt of the ground with the same effect as the greatest collapse acceleration", "deg")

@@ -118,7 +118,7 @@ class SoftBaseRocking(ResultModel):
     vertical_period_s: float = fact("natural period of the vertical vibration, without damping", "s")
     sinking_at_rest_m: float = fact("settlement of the base under self-weight, below the centre of mass", "m")
     lift_rotation_rad: float = fact("rotation at which an edge lifts off under static load", "rad")
-    capacity_g: float = fact("collapse acceleration (horizontal, constant), at which part of the base is lifted", "g")
+    capacity_g: float = fact("collapse acceleration (horizontal, constant) of the block on this base; lesser value of both directions", "g")
     peak_sinking_m: float = fact("greatest settlement; of either sign", "m")
     greatest_pressure_Pa: float = maybe("for a Winkler base: greatest pressure, at an edge", "Pa")
     greatest_edge_force_N: float = maybe("for springs at the edges: greatest force of a spring", "N")
@@ -149,7 +149,7 @@ class Rocking(KindResults):
     rotation_of: str = fact("body whose rotation is given")
     outcome: WholeOutcome = fact(
         "outcome: no rocking, sliding only, rocking and recovery, or collapse. If the run was continued "
-        "with rigid contacts, the outcome is theirs"
+        "with rigid contacts, this is the outcome of the continued run"
     )
     settled: bool = fact("whether the structure came to rest, or collapsed, before the run ended; if false, the outcome is open")
     collapse_half_cycle: int | None = fact("half cycle of the collapse")
@@ -167,7 +167,9 @@ class Rocking(KindResults):
     rebound: float = maybe(
         "rocking against a wall: ratio of angular velocity after / before the rebound, from the deck or from three impacts"
     )
-    energy_residual_ratio: float = fact("greatest error of the energy balance, divided by the energy in motion")
+    energy_residual_ratio: float = fact(
+        "greatest error of the energy balance, divided by the greatest mechanical energy, or by the work of the ground if this is greater"
+    )
     steps: int = fact("steps of the integrator")
     rejected_steps: int = fact("rejected steps")
     restitution: float | None = fact(
@@ -192,7 +194,7 @@ class Rocking(KindResults):
     restitution_inelastic: float = maybe("for an arch: coefficient of restitution by a plastic impact at all joints", source="Moreau 1988")
     outcomes_by_rule: list[RuleOutcome] = maybe(
         "outcome by each impact rule, given if the coefficients of restitution c_v of the rules differ by a factor of more than 1.3. If "
-        "a plastic impact is unsafe, an outcome with the energy that discrete elements keep is added"
+        "plastic impacts may lose too much energy, the outcome with a higher c_v is added"
     )
     decided_by_last_digits: bool = fact(
         "whether the response is chaotic: a perturbation of the motion by 1e-6 grows by a factor of more "
@@ -283,7 +285,7 @@ class FailureDomain(KindResults):
     conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all pulses of the map")
     handed_over: int = maybe(
         "number of pulses of the map that were continued with rigid contacts, because joints slide or hinges form outside the rocking "
-        "mechanism; there, the failure curve is accurate to one cell of the map"
+        "mechanism. At these pulses, the failure curve is accurate to one cell of the map"
     )
     amplitudes_by_rule: list[RuleCurve] = maybe(
         "failure curve by each impact rule, given if the coefficients of restitution c_v of the rules differ by a factor of more than 1.3"
@@ -319,11 +321,13 @@ class FailureDomain(KindResults):
         slides = least_beside(places, self.sliding_from_g, duration)
         decided = self.handed_over is not None and not self.conditions.violated  # rigid contacts decided all of these
         if slides is not None and amplitude >= slides and not decided:
-            found.append(f"At this duration, blocks slide from an amplitude of {slides:.3g} g upwards. Use dem, or check the friction.")
+            found.append(
+                f"For pulses of {duration:.3g} s, blocks slide from an amplitude of {slides:.3g} g upwards. Use dem, or check the friction."
+            )
         elsewhere = least_beside(places, self.hinges_elsewhere_from_g, duration)
         if elsewhere is not None and amplitude >= elsewhere and not decided:
             found.append(
-                f"At this duration, hinges form outside the rocking mechanism from an amplitude of {elsewhere:.3g} g upwards. Use dem."
+                f"For pulses of {duration:.3g} s, hinges form outside the rocking mechanism from an amplitude of {elsewhere:.3g} g upwards. Use dem."
             )
         curves = [(one.rule, between(places, one.amplitudes_g, duration)) for one in self.amplitudes_by_rule or []]
         fails = {rule: capacity is not None and amplitude >= capacity for rule, capacity in curves}
@@ -430,7 +434,7 @@ class FailureCurves(KindResults):
     curves: list[FailureCurve] = fact("failure curves, one for each variant and number of cycles")
     impulses: list[MotionImpulse] = fact("primary impulses of the motions in the deck; empty without a motion")
     agreement: float | None = fact(
-        "share of the verdicts by the curves that agree with the run under the whole motion; null without a comparison"
+        "share of the verdicts of the curves that agree with the outcome of the run under the whole motion; null without a comparison"
     )
     scaling_misfit: float | None = fact(
         "greatest relative difference of amplitude between two curves, with durations divided by the natural time and amplitudes by the "
@@ -443,7 +447,7 @@ class FailureCurves(KindResults):
         lowest = [(min(failing), c.label) for c in self.curves if (failing := [a for a in c.amplitudes_g if a is not None])]
         if not lowest:
             every = [f"{c.label}: {text}" for c in self.curves for text in c.conditions.violated]
-            return judge("None of the calculated pulses causes collapse of a variant.", None, None, "g", violated=every)
+            return judge("None of the calculated pulses causes collapse of any variant.", None, None, "g", violated=every)
         least, label = min(lowest)
         violated = next(c.conditions.violated for c in self.curves if c.label == label)
         return judge(

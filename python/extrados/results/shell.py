@@ -77,8 +77,10 @@ class Flanges(ResultModel):
     """Walls across the push, at the peak."""
 
     share: float = fact("share of the base shear that the walls parallel to the load do not carry in-plane")
-    uplift_N: float = fact("vertical force at the feet of the walls perpendicular to the load: tension, and loss of compression", "N")
-    pressure_N: float = fact("compression added to them", "N")
+    uplift_N: float = fact(
+        "decrease of the compression at the feet of the walls perpendicular to the load, caused by the load (tension included)", "N"
+    )
+    pressure_N: float = fact("increase of the compression at the feet of the walls perpendicular to the load, caused by the load", "N")
     working: bool = fact("whether the walls perpendicular to the load carry an upward or downward force of more than 1/20 of the weight")
 
 
@@ -113,7 +115,7 @@ class PushCurve(SlaCurve):
     seats: list[SeatMotion] = maybe("load and slip of the floors on their supports; not given without such supports")
     feet: list[FootForce] = maybe("for a vault or dome: forces of its feet on the ground")
     cracked_points_by_storey: list[int] = fact(
-        "number of integration points in the planes of the walls that are cracked at the greatest load, by storey"
+        "number of cracked integration points (in the planes of the walls) at the greatest load, by storey"
     )
 
 
@@ -131,7 +133,7 @@ class StageOfPush(PushCurve):
 class FrameCapacity(ResultModel):
     """What the piers of the weakest storey bear by the formulas of a code."""
 
-    code: str = fact("code; if it has several formulas, the least strength counts for a pier")
+    code: str = fact("name of the code; if its formulas for a pier differ, the least strength counts")
     base_shear_N: float = fact(
         "base shear at which the shear force in the weakest storey equals the sum of the strengths of its piers", "N"
     )

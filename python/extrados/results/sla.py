@@ -70,7 +70,9 @@ class SlaCurve(ResultModel):
     first_event_load_N: float | None = fact("load of the first event", "N")
     events: int = fact("events of this run")
     events_before_resume: int = fact("number of events in the earlier runs that this run continues")
-    events_without_equilibrium: int = fact("number of events for which no load multiplier is admissible at all integration points")
+    events_without_equilibrium: int = fact(
+        "number of events for which no load multiplier satisfies the strengths at every integration point"
+    )
     events_out_of_reach: int = fact(
         "number of events that are not valid states: a displacement exceeds 1/10 of the size of the "
         "structure, or a load exceeds ten times the peak load"
@@ -168,7 +170,7 @@ class Scatter(ResultModel):
     seeds: list[int] = fact("the seeds")
     peak_loads_N: list[float] = fact("peak load of each", "N")
     mean_N: float = fact("their mean", "N")
-    coefficient_of_variation: float | None = fact("coefficient of variation of the measured values; null for a single value")
+    coefficient_of_variation: float | None = fact("coefficient of variation of the peak loads; null for a single seed")
     lowest_N: float = fact("the lowest", "N")
     highest_N: float = fact("the highest", "N")
 
@@ -211,7 +213,10 @@ class Sla(SlaCurve, KindResults):
     stones: bool = fact(
         "whether the model consists of blocks with joints; the greatest load, as an acceleration, is then a static limit load"
     )
-    hinges: list[str] = maybe("for blocks: joints that are open, except at an edge, at the peak load")
+    hinges: list[str] = maybe(
+        "for blocks: hinges at the peak load (joints that are open on more than 90 % of their length, by "
+        "more than 1/10 of the greatest opening)"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser peak of the two senses: an acceleration [g], or a load [N] that the deck does not ask for."""
@@ -242,4 +247,4 @@ class Sla(SlaCurve, KindResults):
             )
         if reached is not None:
             return judge_acceleration(abs(reached), demand)
-        return judge(f"The capacity of the building is {load}, expressed as the load that is increased.", None, least.greatest_load_N, "N")
+        return judge(f"The peak of the increasing load is {load}. This is the capacity of the building.", None, least.greatest_load_N, "N")

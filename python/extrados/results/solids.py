@@ -64,7 +64,9 @@ class SolidNonDilatant(ResultModel):
     least_g: float | None = fact(
         "lowest collapse acceleration of a certified state, from any initial state of stress (serves as a warning); null without one", "g"
     )
-    starts_g: list[float] = fact("collapse acceleration of the certified state found from each starting point; the lowest is used", "g")
+    starts_g: list[float] = fact(
+        "collapse acceleration of the certified state found from each starting point of the search; the lowest is used", "g"
+    )
     spread_g: float | None = fact("difference between the highest and the lowest collapse acceleration in `starts_g`", "g")
     zero_gap_g: float | None = fact(
         "for the lowest state found: collapse acceleration minus (work of friction minus work of the weight), per unit of work of the load",
@@ -192,7 +194,9 @@ class SolidThrust(KindResults):
         "geometric safety factor: 1 divided by the least central part of the contacts in which an equilibrium state exists; null if "
         "this part is below 1 % (no horizontal demand), or if it was not found"
     )
-    least_part_of_joints: float | None = fact("central part of the contacts that the most central state needs")
+    least_part_of_joints: float | None = fact(
+        "least central part of the contacts in which an equilibrium state exists (the most central state)"
+    )
     required_friction: float | None = fact("greatest coefficient of friction that the most central state needs")
     required_friction_contact: str | None = fact("contact with this greatest requirement")
     blocks: int = fact("stones")

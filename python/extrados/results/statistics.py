@@ -200,7 +200,9 @@ class LevelShares(Annual):
     goodness_p_value: float | None = maybe(
         "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
     )
-    median_interval: list[float | None] = maybe("bootstrap confidence interval of `median`; each motion is drawn with all its levels")
+    median_interval: list[float | None] = maybe(
+        "bootstrap confidence interval of `median`, resampled by motion (with all levels of each motion)"
+    )
     dispersion_interval: list[float | None] = maybe("bootstrap interval of that dispersion")
     first_collapse_median: float | None = maybe(
         "median of the lognormal curve of the lowest intensity at which a motion causes collapse, in `intensity_unit`",
@@ -321,23 +323,30 @@ class DemFragility(LevelShares):
 
     solver: Literal["compliant", "nonsmooth"] = fact("model of the joints")
     direction_deg: float | None = maybe("for solids: direction of the motions in plan, as an angle from +x towards +y", "deg")
-    uncertain: list[str] = fact("uncertain values; each motion acts on a building of its own")
+    uncertain: list[str] = fact("names of the uncertain values; each motion acts on a building with its own sampled values")
     censored: list[int] = fact("runs without a result because blocks still move at their end, at each level; included in `failed`")
     collapse_probability_bounds: list[list[float | None]] = fact(
-        "share of the motions that cause collapse if no censored run ends with collapse, and if all do, at each level"
+        "bounds of the share of motions that cause collapse, at each level: if none of the `censored` runs ends with collapse, and if all do"
     )
     unstable: int = fact("sampled buildings that collapse under their own weight; they count as collapsed")
     mean_peak_displacement_ratio: list[float | None] = fact(
         "mean ratio of the peak displacement of a block to the displacement that counts as collapse, at each level; collapse counts as 1"
     )
-    deviation_peak_displacement_ratio: list[float | None] = fact("standard deviation of this ratio, at each level")
-    median_peak_displacement_ratio: list[float | None] = fact("median of this ratio, at each level; collapse counts as 1")
-    peak_displacement_ratio_16: list[float | None] = fact(
-        "16th percentile of this ratio, at each level; null if this percentile is collapse", source="Vamvatsikos and Cornell 2002"
+    deviation_peak_displacement_ratio: list[float | None] = fact(
+        "standard deviation of the ratio of peak displacement to collapse displacement, at each level"
     )
-    peak_displacement_ratio_50: list[float | None] = fact("median of this ratio, at each level; null if the median is collapse")
+    median_peak_displacement_ratio: list[float | None] = fact(
+        "median of the ratio of peak displacement to collapse displacement, at each level; collapse counts as 1"
+    )
+    peak_displacement_ratio_16: list[float | None] = fact(
+        "16th percentile of the ratio of peak displacement to collapse displacement, at each level; null if this percentile is collapse",
+        source="Vamvatsikos and Cornell 2002",
+    )
+    peak_displacement_ratio_50: list[float | None] = fact(
+        "median of the ratio of peak displacement to collapse displacement, at each level; null if the median is collapse"
+    )
     peak_displacement_ratio_84: list[float | None] = fact(
-        "84th percentile of this ratio, at each level; null if this percentile is collapse"
+        "84th percentile of the ratio of peak displacement to collapse displacement, at each level; null if this percentile is collapse"
     )
 
     def judged(self, demand: Demand) -> Verdict:
@@ -408,11 +417,11 @@ class Resonance(KindResults):
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, under this motion")
     cap_ratio_for_collapse_within: dict[str, float] = maybe(
-        "for a block, by number of half cycles: lowest limit of the acceleration, divided by the uplift "
-        "acceleration, at which the block collapses within this number"
+        "for a block, by number of half cycles: least cap of the ground acceleration with which the block "
+        "collapses within this number of half cycles, divided by the uplift acceleration"
     )
     least_cap_g: float | None = maybe(
-        "for a block: least cap of the ground acceleration with which the rotation grows; null if the two toes differ", "g"
+        "for a block: least cap of the ground acceleration with which the rotation grows; null for an unsymmetric block", "g"
     )
     least_cap_ratio: float | None = maybe(
         "least cap of the ground acceleration with which the rotation grows, divided by the uplift acceleration"
@@ -424,7 +433,9 @@ class Resonance(KindResults):
     )
     aspects: list[float] = maybe("their B/H", source="thesis Fig. 6-3")
     initial_ratios: list[float] = maybe("rotations at the start, divided by the critical rotation", source="thesis Fig. 6-3")
-    impulse_amplitude_g: float = maybe("for a block: amplitude of the single impulses", "g", source="thesis Fig. 6-4")
+    impulse_amplitude_g: float = maybe(
+        "for a block: amplitude of the impulses of `share_of_starts_that_add`", "g", source="thesis Fig. 6-4"
+    )
     share_of_starts_that_add: dict[str, float] = maybe(
         "share of the initial states in which an impulse adds energy, for each ratio of impulse period to natural period",
         source="thesis Fig. 6-4",
@@ -440,7 +451,7 @@ class Resonance(KindResults):
         else:
             outcome = "stands" if least is not None and self.cap_g < least else "open"
             does = f"does not cause collapse within {self.half_cycles} half cycles"
-        known = "" if least is None else f"; above a limit of {least:.3g} g the rotation grows"
+        known = "" if least is None else f". The rotation grows if the limit of the acceleration exceeds {least:.3g} g"
         return judge(
             f"The worst motion with accelerations up to {self.cap_g:.3g} g {does}{known}.",
             self.cap_g,

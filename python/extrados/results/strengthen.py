@@ -36,7 +36,7 @@ class OtherVerdict(ResultModel):
     margin_before: float | None = fact(
         "critical scale factor of the hazard before the intervention (or lower end of its interval); null if not known"
     )
-    margin_after: float | None = fact("the same after")
+    margin_after: float | None = fact("critical scale factor of the hazard after the intervention; null if not known")
 
 
 class Intervention(ResultModel):
@@ -48,7 +48,7 @@ class Intervention(ResultModel):
         "hoop or chain in space, or change of a key"
     )
     key: str = maybe("key of the deck that the intervention changes")
-    place: str = fact("place of the intervention; for a changed key, its present value")
+    place: str = fact("place of the intervention; for a changed key, its value in the deck")
     start_m: list[float] = maybe("first end of a tie: [x, y], in space [x, y, z]; for a hoop, a point at the height of the hoop", "m")
     via_m: list[list[float]] = maybe("points through which a chain runs", "m")
     stiffness_N_m: float = maybe(
@@ -61,7 +61,8 @@ class Intervention(ResultModel):
     required_N: float | None = maybe("least yield force of the tie that meets the target; null if none does", "N")
     depth_m: float = maybe("depth out of plane that one tie serves", "m")
     greatest_capacity: float | None = fact(
-        "greatest value with any of the sizes, in the unit of the target; null if no collapse mechanism remains, or without a result"
+        "best value of the target quantity with any of the sizes (greatest value; for a probability, the least), in the unit of the "
+        "target; null if no collapse mechanism remains, or without a result"
     )
     capacity_after: float | None = fact("value of the target quantity with the required size, in the unit of the target")
     safety_factor_after: float | None = fact("safety factor with the required size: value divided by demand")
