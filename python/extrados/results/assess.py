@@ -42,7 +42,7 @@ class StrategyVerdict(ResultModel):
     outcome: Outcome = fact("outcome: stands, collapses, cannot-stand, open (not decided) or not-applicable")
     bound: Bound | None = fact("type of the capacity: exact, lower bound or upper bound; null for an estimate")
     violated: list[str] = fact("violated assumptions of the strategy; if there are any, the outcome is open (not decided)")
-    margin: float | None = fact("critical scale factor of the hazard; null if not known")
+    margin: float | None = fact("critical scale factor of the hazard: collapse occurs at greater factors; null if not known")
     margin_at_least: float | None = fact("greatest scale factor of the hazard that was run without collapse; null if no such run")
     margin_below: float | None = fact("least scale factor of the hazard that was run with collapse; null if no such run")
     parameters: str = fact("settings of the strategy, and the rule that selected them")
@@ -134,7 +134,8 @@ class Contribution(ResultModel):
     low: float = fact("lower end of the 90 % confidence interval of `probability`")
     high: float = fact("upper end of the 90 % confidence interval of `probability`")
     weight: float = fact(
-        "weight of this strategy in the overall probability of collapse: its share of the experiments with which the strategies were compared"
+        "weight of this strategy in the overall probability of collapse: "
+        "its share of the experiments with which the strategies were compared"
     )
 
 
@@ -168,7 +169,9 @@ class CollapseProbability(ResultModel):
         "upper end of the interval of `probability`: greatest of the upper ends of the 90 % confidence intervals of the strategies that "
         "contribute; null if no strategy contributes"
     )
-    contributions: list[Contribution] = fact("strategies whose capacity is compared with known results in the verification book")
+    contributions: list[Contribution] = fact(
+        "strategies that contribute to `probability`: their capacities are compared with known results in the verification book"
+    )
     without: dict[str, str] = fact("strategies that do not contribute to the probability, each with the reason")
     statement: str = fact("the probability in words")
     method: str = fact("text that explains how the probability is derived")

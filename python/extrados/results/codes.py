@@ -59,7 +59,7 @@ class Checked(KindResults):
     )
     confidence_factor: float = maybe("confidence factor, by which capacities are divided")
     behaviour_factor: float = maybe("behaviour factor q, which reduces the demand in the linear check of NTC and on a pier")
-    bound: Bound = maybe("type of the capacity by the checks: exact, lower bound or upper bound")
+    bound: Bound = maybe("type of the capacity that the checks give: exact, lower bound or upper bound")
     margin_associated: float | None = maybe(
         "if joints slide: capacity / demand of the governing check with associated (dilatant) friction. If this ratio is at least 1 but "
         "the check without dilatancy fails, the outcome is open. Null without a demand"

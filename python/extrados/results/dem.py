@@ -64,9 +64,9 @@ class TieRun(ResultModel):
     """What a run asked of a tie or a damper."""
 
     name: str = fact("its name")
-    peak_force_N: float = fact("greatest force in absolute value over all time steps; tension is positive", "N")
+    peak_force_N: float = fact("greatest force of the tie or damper (by absolute value) over all time steps; tension is positive", "N")
     end_force_N: float = fact("force at the end", "N")
-    plastic_elongation_m: float = fact("plastic elongation at the end of the run; negative for shortening", "m")
+    plastic_elongation_m: float = fact("plastic elongation of the tie at the end of the run; negative for shortening", "m")
     state: Literal["slack", "elastic", "yielded", "viscous"] = fact(
         "state of the tie over the run. slack: never loaded; elastic: below its yield or slip force; yielded: yielded "
         "or slipped at least once; viscous: a viscous damper"
@@ -87,7 +87,8 @@ class BlocksRun(KindResults):
 
     outcome: DemOutcome = fact("outcome: no joint opens or slides; joints slide; joints open and the blocks stand; or collapse")
     collapse_criterion: CollapseCriterion | None = fact(
-        "criterion of collapse, in addition to the displacement: rotation, loss of height, loss of support or separation; null without collapse"
+        "criterion of collapse, in addition to the displacement: rotation, loss of height, loss of support or separation; "
+        "null without collapse"
     )
     governing_block: str = fact("block that collapsed first; without collapse, the block that moved farthest")
     collapse_time_s: float | None = fact("when the first block collapsed", "s")
@@ -139,7 +140,8 @@ class BlocksRun(KindResults):
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )
     edge_stress_at_rest_Pa: float | None = maybe(
-        "greatest compressive stress at an edge or corner of a joint at rest under self-weight: linear pressure without tension; null if an "
+        "greatest compressive stress at an edge or corner of a joint at rest under self-weight: linear pressure without tension; "
+        "null if an "
         "edge alone carries",
         "Pa",
     )

@@ -227,11 +227,11 @@ class FrameFragility(KindResults):
     buildings: int = maybe("for pushovers: number of sampled buildings")
     levels_g: list[float] = maybe("levels of the intensity", "g")
     drift_16: list[float | None] = maybe(
-        "16th percentile of the greatest pier drift, at each level of intensity; null if this percentile is collapse"
+        "16th percentile of the greatest pier drift, at each level of intensity; null if this percentile corresponds to collapse"
     )
     drift_50: list[float | None] = maybe("the median of it")
     drift_84: list[float | None] = maybe(
-        "84th percentile of the greatest pier drift, at each level of intensity; null if this percentile is collapse"
+        "84th percentile of the greatest pier drift, at each level of intensity; null if this percentile corresponds to collapse"
     )
     confidence_factor: float = maybe("confidence factor of the code for the knowledge level")
     design_intensity_g: float = maybe(

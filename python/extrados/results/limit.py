@@ -185,8 +185,8 @@ class Tilt(KindResults):
     )
     collapse_acceleration_non_associated_opposite_g: float = maybe("the same to -x", "g")
     collapse_acceleration_load_path_g: float = maybe(
-        "design value of the collapse acceleration towards +x, if joints slide: the lowest of the load "
-        "paths with elastic joints and three stiffness ratios",
+        "design value of the collapse acceleration towards +x, if joints slide: the lowest value of the load "
+        "paths with elastic joints, for three ratios of joint stiffness",
         "g",
         source="collapse acceleration with elastic-frictional joints without dilatancy (incremental return "
         "mapping); the certificate is the same as in `non_dilatant`",
@@ -683,7 +683,7 @@ class Imperfections(KindResults):
 
     count: int = fact("number of random geometries")
     deviation_m: float = fact("greatest distance of a point of a random geometry from its position in the deck", "m")
-    given_collapse_acceleration_g: float = fact("collapse acceleration of the geometry in the deck", "g")
+    given_collapse_acceleration_g: float = fact("collapse acceleration of the geometry in the deck, without random deviations", "g")
     median_collapse_acceleration_g: float = fact("median capacity", "g")
     low_collapse_acceleration_g: float = fact("5th percentile of the capacity of the random geometries: lower end of the 90 % band", "g")
     high_collapse_acceleration_g: float = fact("95th percentile of the capacity of the random geometries: upper end of the 90 % band", "g")

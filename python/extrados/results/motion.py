@@ -137,8 +137,12 @@ class ShakeTable(KindResults):
 
     max_velocity_m_s: float = fact("greatest velocity of the table", "m/s")
     masses_kg: list[float] = fact("moving masses, table included", "kg")
-    stroke_to_flow_Hz: float = fact("frequency above which the flow governs instead of the stroke", "Hz", source="thesis Fig. C-1")
-    flow_to_force_Hz: list[float] = fact("frequency above which the force governs instead of the flow, for each mass", "Hz")
+    stroke_to_flow_Hz: float = fact(
+        "frequency above which the limit of flow governs instead of the limit of stroke", "Hz", source="thesis Fig. C-1"
+    )
+    flow_to_force_Hz: list[float] = fact(
+        "frequency above which the limit of force governs instead of the limit of flow, for each mass", "Hz"
+    )
     fits: bool = maybe("whether the table can play the motion with each of the masses")
     low_cut_Hz: float = maybe("corner frequency of the high-pass filter of the drive", "Hz")
     peak_displacement_m: float = maybe("greatest displacement of the drive", "m")
@@ -160,4 +164,6 @@ class ShakeTable(KindResults):
             return judge("The deck gives no motion that the table could play.")
         most = max(max(u.stroke, u.flow, u.force) for u in self.use_of_limits)
         text = "fits the table" if self.fits else "does not fit the table"
-        return judge(f"The motion {text}: it needs {most:.3g} of the governing limit.", most, 1.0, "of the limit", "not-applicable")
+        return judge(
+            f"The motion {text}: it needs {100.0 * most:.3g} % of the governing limit.", most, 1.0, "of the limit", "not-applicable"
+        )

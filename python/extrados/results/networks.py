@@ -60,7 +60,8 @@ class ThrustNetwork(KindResults):
         "greatest distance by which branches pass outside the blocks, in the network of greatest thrust; null without this network", "m"
     )
     horizontal_outside_m: float | None = fact(
-        "greatest distance by which branches pass outside the blocks, in the network of greatest horizontal load; null without this network",
+        "greatest distance by which branches pass outside the blocks, in the network of greatest horizontal load; "
+        "null without this network",
         "m",
     )
     least_friction: float | None = fact(

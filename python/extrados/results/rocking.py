@@ -133,7 +133,7 @@ class HandOver(ResultModel):
     """The rest of the motion on rigid contacts, from the state in which a condition of the mechanism fails."""
 
     time_s: float = fact(
-        "time at which the run with rigid contacts takes over, just before a condition is violated; it "
+        "time at which the run with rigid contacts begins, just before a condition is violated. This run "
         "starts from the positions and velocities of the blocks at this time",
         "s",
     )
@@ -399,10 +399,10 @@ class FailureCurve(ResultModel):
     natural_time_s: float = fact("time by which the durations are scaled: sqrt(R/g) for an arch, 1/p for a block", "s")
     cycles: int = fact("number of cycles of a train of sines; 1 for all other pulses")
     static_verdicts: list[Literal["stands", "fails"]] = fact(
-        "for each motion: its peak acceleration, compared with the uplift acceleration"
+        "for each motion: verdict of the peak acceleration, compared with the uplift acceleration"
     )
     curve_verdicts: list[Literal["stands", "fails"] | None] = fact(
-        "for each motion: its primary impulse, compared with the failure curve; null if the period of the impulse is outside the curve"
+        "for each motion: verdict of the primary impulse, compared with the failure curve; null if the period of the impulse is outside the curve"
     )
     run_outcomes: list[RockingOutcome | None] = fact("for each motion: outcome of the whole motion; null without a result")
     sliding_from_g: list[float | None] = fact(
@@ -413,7 +413,9 @@ class FailureCurve(ResultModel):
         "mechanism, at each duration; null if this occurs at none",
         "g",
     )
-    conditions: Conditions = fact("number of points of the curve below which blocks slide, or hinges form outside the rocking mechanism")
+    conditions: Conditions = fact(
+        "number of durations at which blocks slide, or hinges form outside the rocking mechanism, at an amplitude up to the failure curve"
+    )
     amplitudes_by_rule: list[RuleCurve] = maybe(
         "failure curve by each impact rule, given if the coefficients of restitution c_v of the rules differ by a factor of more than 1.3"
     )

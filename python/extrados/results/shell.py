@@ -48,7 +48,7 @@ class JointMotion(ResultModel):
 class SeatMotion(ResultModel):
     """How far a floor has moved off a wall on which it rests by friction."""
 
-    floor: str = fact("floor, as its number in the deck and its storey")
+    floor: str = fact("floor: its number in the deck and its storey")
     wall: str = fact("wall on which the floor rests")
     normal_N: float = fact("load of the floor on its support on the wall, under the constant loads; compression is positive", "N")
     friction_N: float = fact("friction times this load", "N")
@@ -158,7 +158,7 @@ class Pushover(PushCurve, KindResults):
     pattern: str = fact("of the horizontal forces")
     direction_deg: float = fact("direction of the load in plan", "deg")
     frequency_Hz: float = maybe("frequency of the mode that gives the distribution of the load", "Hz")
-    modal_mass_ratio: float = maybe("participating mass ratio of this mode")
+    modal_mass_ratio: float = maybe("participating mass ratio of the mode that gives the distribution of the load")
     cracking: str = fact("how cracked material behaved")
     layers: int = fact("number of integration points through the thickness of the walls")
     nodes: int = fact("nodes of the mesh")

@@ -20,7 +20,7 @@ class Bilinear(ResultModel):
     yield_load_N: float = fact("load of the plateau", "N")
     yield_displacement_m: float = fact("displacement at its start", "m")
     ultimate_displacement_m: float = fact(
-        "ultimate displacement: displacement at which the load has decreased to 80 % of the peak, or the last displacement if it has not",
+        "ultimate displacement: displacement at which the load has decreased to 80 % of the peak, or the last displacement if the load has not decreased so far",
         "m",
     )
     ductility: float = fact("ultimate over yield displacement")
@@ -87,7 +87,7 @@ class SlaCurve(ResultModel):
     last_displacement_m: float | None = fact("control displacement of that event", "m")
     energy_residual_ratio: float = fact("error of the energy balance, divided by the work of the loads")
     external_work_J: float | None = fact(
-        "work of all loads up to the last event in equilibrium, if displacements change linearly between events", "J"
+        "work of all loads up to the last event in equilibrium, calculated with linear changes of displacement between events", "J"
     )
     stored_energy_J: float | None = fact("elastic energy at that event", "J")
     dissipated_energy_J: float | None = fact(
@@ -186,7 +186,9 @@ class Comparison(ResultModel):
     inside_ratio: float | None = fact(
         "share of the measured points at which the calculated envelope lies between the least and the greatest measured load"
     )
-    half_band_ratio: float = fact("mean half width of the measured band, divided by the mean measured load")
+    half_band_ratio: float = fact(
+        "mean half of the distance between the least and the greatest measured load, divided by the mean measured load"
+    )
 
 
 class Sla(SlaCurve, KindResults):

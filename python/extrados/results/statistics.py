@@ -126,7 +126,7 @@ class Ensemble(Annual):
     sensitivity: dict[str, Sensitivity] = maybe(
         "Sobol indices of each uncertain value; `motion` is the random choice of the motion", source="Saltelli and others 2010"
     )
-    sensitivity_runs: int = maybe("number of runs added for these indices; they are not included in `count`")
+    sensitivity_runs: int = maybe("number of additional runs for the Sobol indices; they are not included in `count`")
     intensity: str = maybe("for a cloud analysis: intensity measure of the fragility curves; medians are in its unit")
     intensity_unit: str = maybe("unit of the intensities and of the medians")
     median: float | None = maybe(
@@ -197,9 +197,7 @@ class LevelShares(Annual):
     dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
     deviance: float | None = maybe("deviance of that curve")
     degrees_of_freedom: int = maybe("its degrees of freedom")
-    goodness_p_value: float | None = maybe(
-        "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
-    )
+    goodness_p_value: float | None = maybe("p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true")
     median_interval: list[float | None] = maybe(
         "bootstrap confidence interval of `median`, resampled by motion (with all levels of each motion)"
     )
@@ -214,7 +212,7 @@ class LevelShares(Annual):
     first_collapse_deviance: float | None = maybe("deviance of that curve")
     first_collapse_degrees_of_freedom: int = maybe("its degrees of freedom")
     first_collapse_goodness_p_value: float | None = maybe(
-        "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
+        "p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true"
     )
     first_collapse_median_interval: list[float | None] = maybe("profile-likelihood interval of that median")
     first_collapse_dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
@@ -225,7 +223,7 @@ class LevelShares(Annual):
     uplift_deviance: float | None = maybe("deviance of that curve")
     uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
     uplift_goodness_p_value: float | None = maybe(
-        "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
+        "p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true"
     )
     overturning_given_uplift_median: float | None = maybe(
         "median of the lognormal curve of the probability of collapse if rocking starts, in `intensity_unit`", source="Baker 2015"
@@ -234,7 +232,7 @@ class LevelShares(Annual):
     overturning_given_uplift_deviance: float | None = maybe("deviance of that curve")
     overturning_given_uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
     overturning_given_uplift_goodness_p_value: float | None = maybe(
-        "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
+        "p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true"
     )
     motions_that_collapse: int = fact("number of motions that cause collapse at one or more levels")
     resurrections: int = fact("number of motions that cause collapse at one level but not at a higher level")
@@ -288,14 +286,16 @@ class OverLevels(LevelShares):
         "median of the peak rotation divided by the critical rotation, at each level; a motion that causes collapse counts as 1"
     )
     peak_rotation_ratio_16: list[float | None] = fact(
-        "16th percentile of the peak rotation divided by the critical rotation, at each level; null if this percentile is collapse",
+        "16th percentile of the peak rotation divided by the critical rotation, at each level; "
+        "null if this percentile corresponds to collapse",
         source="Vamvatsikos and Cornell 2002",
     )
     peak_rotation_ratio_50: list[float | None] = fact(
-        "median of the peak rotation divided by the critical rotation, at each level; null if the median is collapse"
+        "median of the peak rotation divided by the critical rotation, at each level; null if the median corresponds to collapse"
     )
     peak_rotation_ratio_84: list[float | None] = fact(
-        "84th percentile of the peak rotation divided by the critical rotation, at each level; null if this percentile is collapse"
+        "84th percentile of the peak rotation divided by the critical rotation, at each level; "
+        "null if this percentile corresponds to collapse"
     )
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
@@ -326,7 +326,8 @@ class DemFragility(LevelShares):
     uncertain: list[str] = fact("names of the uncertain values; each motion acts on a building with its own sampled values")
     censored: list[int] = fact("runs without a result because blocks still move at their end, at each level; included in `failed`")
     collapse_probability_bounds: list[list[float | None]] = fact(
-        "bounds of the share of motions that cause collapse, at each level: if none of the `censored` runs ends with collapse, and if all do"
+        "bounds of the share of motions that cause collapse, at each level: if none of the `censored` runs ends with collapse, "
+        "and if all do"
     )
     unstable: int = fact("sampled buildings that collapse under their own weight; they count as collapsed")
     mean_peak_displacement_ratio: list[float | None] = fact(
@@ -339,20 +340,22 @@ class DemFragility(LevelShares):
         "median of the ratio of peak displacement to collapse displacement, at each level; collapse counts as 1"
     )
     peak_displacement_ratio_16: list[float | None] = fact(
-        "16th percentile of the ratio of peak displacement to collapse displacement, at each level; null if this percentile is collapse",
+        "16th percentile of the ratio of peak displacement to collapse displacement, at each level; "
+        "null if this percentile corresponds to collapse",
         source="Vamvatsikos and Cornell 2002",
     )
     peak_displacement_ratio_50: list[float | None] = fact(
-        "median of the ratio of peak displacement to collapse displacement, at each level; null if the median is collapse"
+        "median of the ratio of peak displacement to collapse displacement, at each level; null if the median corresponds to collapse"
     )
     peak_displacement_ratio_84: list[float | None] = fact(
-        "84th percentile of the ratio of peak displacement to collapse displacement, at each level; null if this percentile is collapse"
+        "84th percentile of the ratio of peak displacement to collapse displacement, at each level; "
+        "null if this percentile corresponds to collapse"
     )
 
     def judged(self, demand: Demand) -> Verdict:
         """The fitted median is the capacity; censored runs are a doubt."""
         many = sum(self.censored)
-        return self.judged_over_levels([f"Blocks still move at the end of {many} runs, which have no outcome."] if many else [])
+        return self.judged_over_levels([f"Blocks still move at the end of {many} runs, so these runs have no outcome."] if many else [])
 
 
 class OverDurations(KindResults):

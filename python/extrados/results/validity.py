@@ -183,7 +183,8 @@ FramePushover = Validity(
     "slide or crack in shear; beyond its drift limit an element loses its lateral strength and keeps its vertical "
     "load. All nodes of a wall on one level have the same displacement along the wall.",
     "The frame model excludes out-of-plane failure of walls: with a code, each wall is checked for it separately. Spandrels carry no "
-    "normal force except that of ties and ring beams. At a corner, a wall lifts at most the weight on the effective width of its flange. Strengths and "
+    "normal force except that of ties and ring beams. At a corner, a wall lifts at most the weight on the effective width of its flange. "
+    "Strengths and "
     "drift limits are those of codes, and tested walls differ from them by about 20 %. With irregular openings the division into piers "
     "is uncertain.",
 )

@@ -20,7 +20,7 @@ class IdealisedCurve(ResultModel):
     yield_load_N: float = fact("base shear of the plateau", "N")
     yield_displacement_m: float = fact("displacement at its start", "m")
     ultimate_displacement_m: float = fact(
-        "ultimate displacement: displacement at collapse, up to which both curves enclose equal areas", "m"
+        "ultimate displacement: displacement at collapse; up to it, the capacity curve and the bilinear curve enclose equal areas", "m"
     )
     ended_by: Literal["drop", "drift", "end"] = fact(
         "end of the curve. drop: base shear decreased by 20 %; drift: all piers of one storey of a wall at their limit "
@@ -41,7 +41,7 @@ class DisplacementCheck(ResultModel):
         "factor on the seismic action at which the check (displacement and q*) is just satisfied; null if not found"
     )
     demand_pga_g: float | None = fact("demand: peak ground acceleration a_g S of the seismic action", "g")
-    capacity_pga_g: float | None = fact("capacity: peak ground acceleration a_g S times the factor; capacity / demand is alpha_PGA", "g")
+    capacity_pga_g: float | None = fact("capacity: peak ground acceleration a_g S times `factor`; capacity / demand is alpha_PGA", "g")
     return_period_years: float | None = fact("return period of the seismic action; null if not known", "year")
     capacity_return_period_years: float | None = fact(
         "return period of the action that the building can carry, interpolated between the limit states "
