@@ -50,10 +50,14 @@ class PierLimits(ResultModel):
 
     wall: str = fact("its name")
     storey: int = fact("the storey, from 1")
-    first_at_strength_m: float | None = fact("base shear at which the first pier reaches its strength", "m")
-    all_at_strength_m: float | None = fact("base shear at which the last pier reaches its strength", "m")
-    first_at_limit_m: float | None = fact("base shear at which the first pier reaches its drift limit", "m")
-    all_at_limit_m: float | None = fact("base shear at which the last pier reaches its drift limit", "m")
+    first_at_strength_m: float | None = fact("control displacement at which the first pier reaches its strength; null if none does", "m")
+    all_at_strength_m: float | None = fact(
+        "control displacement at which the last pier reaches its strength; null if not all piers do", "m"
+    )
+    first_at_limit_m: float | None = fact("control displacement at which the first pier reaches its drift limit; null if none does", "m")
+    all_at_limit_m: float | None = fact(
+        "control displacement at which the last pier reaches its drift limit; null if not all piers do", "m"
+    )
 
 
 class FailedElement(ResultModel):

@@ -327,7 +327,8 @@ class FailureDomain(KindResults):
         elsewhere = least_beside(places, self.hinges_elsewhere_from_g, duration)
         if elsewhere is not None and amplitude >= elsewhere and not decided:
             found.append(
-                f"For pulses of {duration:.3g} s, hinges form outside the rocking mechanism from an amplitude of {elsewhere:.3g} g upwards. Use dem."
+                f"For pulses of {duration:.3g} s, hinges form outside the rocking mechanism from an amplitude of {elsewhere:.3g} g upwards. "
+                "Use dem."
             )
         curves = [(one.rule, between(places, one.amplitudes_g, duration)) for one in self.amplitudes_by_rule or []]
         fails = {rule: capacity is not None and amplitude >= capacity for rule, capacity in curves}
@@ -402,7 +403,8 @@ class FailureCurve(ResultModel):
         "for each motion: verdict of the peak acceleration, compared with the uplift acceleration"
     )
     curve_verdicts: list[Literal["stands", "fails"] | None] = fact(
-        "for each motion: verdict of the primary impulse, compared with the failure curve; null if the period of the impulse is outside the curve"
+        "for each motion: verdict of the primary impulse, compared with the failure curve; "
+        "null if the period of the impulse is outside the curve"
     )
     run_outcomes: list[RockingOutcome | None] = fact("for each motion: outcome of the whole motion; null without a result")
     sliding_from_g: list[float | None] = fact(

@@ -20,7 +20,8 @@ class Bilinear(ResultModel):
     yield_load_N: float = fact("load of the plateau", "N")
     yield_displacement_m: float = fact("displacement at its start", "m")
     ultimate_displacement_m: float = fact(
-        "ultimate displacement: displacement at which the load has decreased to 80 % of the peak, or the last displacement if the load has not decreased so far",
+        "ultimate displacement: displacement at which the load has decreased to 80 % of the peak, "
+        "or the last displacement if the load has not decreased so far",
         "m",
     )
     ductility: float = fact("ultimate over yield displacement")

@@ -95,7 +95,7 @@ class SolidTilt(KindResults):
     least_direction_deg: float = fact("direction of the load with the lowest collapse acceleration", "deg")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
-    moving_blocks: int = fact("blocks that move in the mechanism, at more than 1/1000 of the speed of the fastest block")
+    moving_blocks: int = fact("number of blocks that move in the mechanism, at more than 1/1000 of the speed of the fastest block")
     fastest_block: str = fact("block whose centroid moves fastest")
     opening_contacts: list[OpenContact] = fact("contacts that open or slide; the 20 fastest are listed")
     weight_N: float = fact("weight of the structure and of the weights placed on it", "N")
@@ -107,8 +107,8 @@ class SolidTilt(KindResults):
     )
     overlap_residual: float = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest contact")
     dilating_contacts: int = fact(
-        "contacts in compression that slide in the three mechanisms (along the load direction, opposite, "
-        "lowest capacity). If there are any, the capacity is an upper bound (dilatant friction)"
+        "greatest number of contacts in compression that slide in one of the three mechanisms (along the load direction, "
+        "opposite, lowest capacity). If it is not zero, the capacity is an upper bound (dilatant friction)"
     )
     collapse_acceleration_load_path_g: float = maybe(
         "design value of the collapse acceleration along the load direction, if contacts slide: the "
@@ -142,7 +142,7 @@ class SolidTilt(KindResults):
     )
     face_law_reason: str = maybe("reason why the face law gives no value")
     ties: list[TieForce] = maybe("forces of ties, chains and hoops at the collapse acceleration; for bonded ones, of each segment")
-    crushing_contacts: int = maybe("contacts that crush in the mechanism; null without a compressive strength")
+    crushing_contacts: int = maybe("number of contacts that crush in the mechanism; only given with a compressive strength")
     collapse_acceleration_dry_g: float = maybe(
         'collapse acceleration along the load direction without mortar, given if `mortar` = "ductile"; 0 if the blocks then cannot stand',
         "g",

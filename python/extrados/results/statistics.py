@@ -329,7 +329,7 @@ class DemFragility(LevelShares):
         "bounds of the share of motions that cause collapse, at each level: if none of the `censored` runs ends with collapse, "
         "and if all do"
     )
-    unstable: int = fact("sampled buildings that collapse under their own weight; they count as collapsed")
+    unstable: int = fact("number of sampled buildings that collapse under their own weight; they count as collapsed")
     mean_peak_displacement_ratio: list[float | None] = fact(
         "mean ratio of the peak displacement of a block to the displacement that counts as collapse, at each level; collapse counts as 1"
     )
