@@ -196,7 +196,7 @@ class CodeChecks(Checked):
 class WallMechanism(ResultModel):
     """A wall of a building on a plan above the foot of one of its storeys, or its gable."""
 
-    wall: str = fact("its name")
+    wall: str = fact("name of the wall")
     gable: bool = fact("whether the part is the gable above the highest storey of the wall")
     storey: int = fact(
         "number (counted from 1) of the storey at whose foot the wall rotates; for a gable, the number of the top storey plus one"
@@ -204,7 +204,7 @@ class WallMechanism(ResultModel):
     foot_m: float = fact("height above the ground of the foot about which the wall or the gable rotates", "m")
     multiplier: float = fact("alpha_0")
     activation_acceleration_g: float = fact("a_0*", "g")
-    zero_displacement_m: float | None = fact("d_0*; null: none", "m")
+    zero_displacement_m: float | None = fact("d_0*: displacement at which the multiplier becomes zero; null if none", "m")
     margin: float | None = fact("capacity divided by demand in the governing check; null without a demand")
 
 
@@ -263,7 +263,7 @@ class LocalMechanism(Checked):
 class NoLocalMechanism(KindResults):
     """local-mechanism: no local mechanism of the kind that is checked."""
 
-    reason: str = fact("why the building has none")
+    reason: str = fact("reason why the building has no such mechanism")
 
     def statement(self) -> str:
         """The result in words."""

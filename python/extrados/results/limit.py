@@ -43,15 +43,15 @@ class Reaction(ResultModel):
 
     joint: int = fact("number of the joint that transfers this force to the ground")
     name: str = fact("its name")
-    horizontal_N: float = fact("to +x", "N")
-    vertical_N: float = fact("upward", "N")
+    horizontal_N: float = fact("horizontal force of the ground on the structure, positive towards +x", "N")
+    vertical_N: float = fact("vertical force of the ground on the structure, positive upwards", "N")
 
 
 class TieForce(ResultModel):
     """What a state of the structure asks of a tie, strut or spring of the deck."""
 
     name: str = fact("its name")
-    force_N: float = fact("force in it, tension positive", "N")
+    force_N: float = fact("force of the tie; tension is positive", "N")
     state: Literal["slack", "carries", "yields"] = fact(
         "state of the tie. slack: no force; carries: below the yield force; yields: at the yield force"
     )
@@ -60,8 +60,8 @@ class TieForce(ResultModel):
 class ChainThrust(ResultModel):
     """Horizontal thrust of an arch of the structure, upright, at its left springing; at its crown where ties hold it."""
 
-    min_N: float = fact("least", "N")
-    max_N: float = fact("greatest", "N")
+    min_N: float = fact("minimum horizontal thrust", "N")
+    max_N: float = fact("maximum horizontal thrust", "N")
 
 
 class Fracture(ResultModel):
@@ -105,10 +105,12 @@ class LoadPath(ResultModel):
         "whether the certificate is satisfied, recalculated independently of the solver: equilibrium, "
         "shear force |s| at most friction mu N, and zero gap"
     )
-    zero_gap_g: float | None = fact("as in non_dilatant", "g")
-    equilibrium_residual: float | None = fact("as in non_dilatant")
-    friction_residual: float | None = fact("as in non_dilatant")
-    overlap_residual: float | None = fact("as in non_dilatant")
+    zero_gap_g: float | None = fact("gap of the certificate, as in `non_dilatant`; null without a certificate", "g")
+    equilibrium_residual: float | None = fact("greatest unbalanced force, as in `non_dilatant`; null without a certificate")
+    friction_residual: float | None = fact(
+        "greatest excess of shear over friction, or greatest tension, divided by the total load; null without a certificate"
+    )
+    overlap_residual: float | None = fact("greatest rate of overlap, as in `non_dilatant`; null without a certificate")
     reason: str = maybe("reason for a missing value")
 
 
@@ -169,7 +171,7 @@ class Tilt(KindResults):
     tilt_angle_opposite_deg: float = fact("tilt of the ground with the same effect as the collapse acceleration towards -x", "deg")
     admissible_interval_g: list[float] = fact("accelerations between which an admissible thrust line exists", "g")
     load_direction: Literal["+x"] = fact("direction of the load (+x or -x) for which hinges and friction are given")
-    hinges: list[Hinge] = fact("hinges of the mechanism")
+    hinges: list[Hinge] = fact("hinges of the collapse mechanism towards +x")
     sliding_joints: list[int] = fact("joints that slide or open in the collapse mechanism towards +x")
     hinges_opposite: list[Hinge] = fact("hinges of the collapse mechanism towards -x")
     dilating_joints: list[int] = maybe(
@@ -183,7 +185,9 @@ class Tilt(KindResults):
         "g",
         source="Ferris and Tin-Loi 2001",
     )
-    collapse_acceleration_non_associated_opposite_g: float = maybe("the same to -x", "g")
+    collapse_acceleration_non_associated_opposite_g: float = maybe(
+        "collapse acceleration towards -x for sliding without dilatancy: the lowest of the certified states that were found", "g"
+    )
     collapse_acceleration_load_path_g: float = maybe(
         "design value of the collapse acceleration towards +x, if joints slide: the lowest value of the load "
         "paths with elastic joints, for three ratios of joint stiffness",
@@ -191,9 +195,11 @@ class Tilt(KindResults):
         source="collapse acceleration with elastic-frictional joints without dilatancy (incremental return "
         "mapping); the certificate is the same as in `non_dilatant`",
     )
-    collapse_acceleration_load_path_opposite_g: float = maybe("the same to -x", "g")
+    collapse_acceleration_load_path_opposite_g: float = maybe(
+        "design value of the collapse acceleration towards -x, if joints slide: the lowest value of the load paths", "g"
+    )
     load_paths: list[LoadPath] = maybe("load paths towards +x, one for each ratio of joint stiffness")
-    load_paths_opposite: list[LoadPath] = maybe("load paths to -x")
+    load_paths_opposite: list[LoadPath] = maybe("load paths towards -x, one for each ratio of joint stiffness")
     non_associated_reason: str = maybe("reason why no collapse state without dilatancy is given besides the upper bound")
     touching_joints: list[int] = fact("joints in which the thrust line reaches an end of the joint without forming a hinge")
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires at collapse")
@@ -225,7 +231,7 @@ class Tilt(KindResults):
     rise_m: float = maybe("rise of the intrados", "m")
     base_width_m: float = maybe("width of a buttress at its base", "m")
     height_above_ground_m: float = maybe("height of the crown above the ground", "m")
-    overall_width_m: float = maybe("width over the outer buttresses", "m")
+    overall_width_m: float = maybe("overall width, including the outer buttresses", "m")
     nave_span_m: float = maybe("clear span of the nave", "m")
     left_aisle_span_m: float = maybe("clear span of the left aisle", "m")
     right_aisle_span_m: float = maybe("clear span of the right aisle", "m")
@@ -521,7 +527,7 @@ class JointOpening(ResultModel):
     name: str = fact("its name")
     opening_mm: float = fact("opening of the joint at the end that opens more", "mm")
     side: OpenSide = fact("end of the joint that opens more; for arches intrados or extrados")
-    slip_mm: float = fact("how far it slides", "mm")
+    slip_mm: float = fact("slip of the joint", "mm")
 
 
 class MovingSupports(KindResults):
@@ -564,7 +570,7 @@ class MovingSupports(KindResults):
 class GoverningMechanism(ResultModel):
     """A mechanism that governs somewhere in a sweep."""
 
-    number: int = fact("its number in the figures")
+    number: int = fact("number of the mechanism in the figures")
     hinges: str = fact("sequence of the hinges from left to right, in words")
 
 
@@ -582,7 +588,7 @@ class Change(ResultModel):
         'stand; "locked": no collapse mechanism exists',
         name="to",
     )
-    collapse_acceleration_g: float | None = fact("collapse acceleration there", "g")
+    collapse_acceleration_g: float | None = fact("collapse acceleration at this value of the key", "g")
 
 
 #: Of one section among many: it has a capacity; a certificate proves that it cannot stand (capacity 0); no load of the kind
@@ -602,13 +608,13 @@ class Sweep(KindResults):
     """sweep: capacity and mechanism as one key of the deck varies."""
 
     vary: str = fact("the key that varies")
-    unit: str = fact("its unit")
-    mechanisms: list[GoverningMechanism] = fact("the mechanisms that govern somewhere")
+    unit: str = fact("unit of the key")
+    mechanisms: list[GoverningMechanism] = fact("mechanisms that govern in a part of the range of the key")
     changes: list[Change] = fact("values of the key at which another mechanism begins to govern")
-    stable_limits: list[float] = fact("least and greatest value of the key (in its unit) with which the structure stands")
+    stable_limits: list[float] = fact("values of the key (in its unit) at the ends of the range in which the structure stands")
     locked_limits: list[float] = fact("values of the key at which locking (no collapse mechanism exists) begins or ends")
     optimum_value: float = fact("value of the key with the greatest capacity, in the unit of the key")
-    optimum_collapse_acceleration_g: float = fact("the greatest capacity", "g")
+    optimum_collapse_acceleration_g: float = fact("greatest collapse acceleration of all calculated values", "g")
     optimum_tilt_angle_deg: float = fact("tilt of the ground with the same effect as the greatest collapse acceleration", "deg")
     optimum_inside: bool = fact("whether the optimum lies inside the calculated range, and not at one of its ends")
     values: list[float] = fact("values of the varied key, in the unit of the key")
@@ -641,9 +647,9 @@ class Sweep(KindResults):
 class NoAnswerRow(ResultModel):
     """A section of a survey that cannot stand, or has no answer."""
 
-    row: int = fact("its line in the file")
+    row: int = fact("line of the section in the file")
     name: str = fact("its name")
-    reason: str = fact("why")
+    reason: str = fact("reason why the section cannot stand or has no result")
 
 
 class Survey(KindResults):
@@ -659,9 +665,9 @@ class Survey(KindResults):
         "number of sections in whose mechanism joints in compression slide; their capacity is an upper bound (dilatant friction)"
     )
     weakest: str | None = fact("name of the weakest section; a section that cannot stand has capacity 0")
-    weakest_collapse_acceleration_g: float | None = fact("its capacity", "g")
+    weakest_collapse_acceleration_g: float | None = fact("collapse acceleration of the weakest section", "g")
     median_collapse_acceleration_g: float | None = fact("median capacity of the sections that stand under their self-weight", "g")
-    sections_per_second: float = fact("speed of the survey", "1/s")
+    sections_per_second: float = fact("number of sections calculated per second", "1/s")
     duality_gap: float = fact("greatest difference between the bounds", "g")
 
     def judged(self, demand: Demand) -> Verdict:

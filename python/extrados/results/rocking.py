@@ -30,7 +30,7 @@ class JointTime(ResultModel):
     """Where and when a condition of rocking first fails."""
 
     joint: str = fact("name of the joint; empty if the whole resting structure slides")
-    time_s: float = fact("first time", "s")
+    time_s: float = fact("first time at which the condition fails", "s")
 
 
 class Conditions(ResultModel):
@@ -65,7 +65,7 @@ class Conditions(ResultModel):
 class RuleOutcome(ResultModel):
     """What the motion does under an impact rule."""
 
-    rule: str = fact("impact rule: a value of [joints] `restitution`, or a number found with discrete elements")
+    rule: str = fact("impact rule: a value of [joints] `restitution`, or a higher coefficient of restitution that is tried in addition")
     restitution: float = fact(
         "coefficient of restitution (angular velocity after / before impact), limited to values from 0 "
         "to 1; for a mechanism, at the impact that starts rocking towards +x"
@@ -76,7 +76,7 @@ class RuleOutcome(ResultModel):
 class RestraintForces(ResultModel):
     """A tie, damper or added hinge while the structure rocks."""
 
-    name: str = fact("as the deck calls it")
+    name: str = fact("name in the deck")
     least_force_N: float = maybe("least force of a tie or damper; tension is positive", "N")
     greatest_force_N: float = maybe("greatest force of a tie or damper; tension is positive", "N")
     permanent_elongation_m: float = maybe("permanent elongation of a tie or damper at the end of the run, by yield or slip", "m")
@@ -103,8 +103,8 @@ class StackRocking(ResultModel):
     critical_rotation_upper_rad: float = fact("slenderness angle of the upper block alone", "rad")
     uplift_as_one_g: float = fact("horizontal acceleration at which both blocks begin to rock together, as one body", "g")
     uplift_upper_g: float = fact("horizontal acceleration at which the upper block begins to rock alone", "g")
-    impacts_on_ground: int = fact("impacts on the ground")
-    impacts_between: int = fact("impacts at the joint between")
+    impacts_on_ground: int = fact("number of impacts on the ground")
+    impacts_between: int = fact("number of impacts at the joint between the two blocks")
     modes: list[ModeShare] = fact("share of the rocking time spent in each mode")
 
 
@@ -154,9 +154,9 @@ class Rocking(KindResults):
     settled: bool = fact("whether the structure came to rest, or collapsed, before the run ended; if false, the outcome is open")
     collapse_half_cycle: int | None = fact("half cycle of the collapse")
     collapse_time_s: float | None = fact("time after which the structure can no longer recover", "s")
-    half_cycles: int = fact("half cycles of rocking")
+    half_cycles: int = fact("number of half cycles of rocking")
     impacts: int = fact("number of impacts")
-    impact_times_s: list[float] = fact("when they happen", "s")
+    impact_times_s: list[float] = fact("times of the impacts", "s")
     peak_rotation_rad: float = fact("greatest rotation, positive to +x", "rad")
     peak_rotation_ratio: float = fact("greatest rotation, divided by the critical rotation (beyond it, gravity causes collapse)")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
@@ -170,8 +170,8 @@ class Rocking(KindResults):
     energy_residual_ratio: float = fact(
         "greatest error of the energy balance, divided by the greatest mechanical energy, or by the work of the ground if this is greater"
     )
-    steps: int = fact("steps of the integrator")
-    rejected_steps: int = fact("rejected steps")
+    steps: int = fact("number of time steps of the integrator")
+    rejected_steps: int = fact("number of rejected time steps")
     restitution: float | None = fact(
         "coefficient of restitution: angular velocity after / before an impact; for blocks and mechanisms, the impact "
         "that starts rocking towards +x; null on a compliant base"
@@ -210,7 +210,7 @@ class Rocking(KindResults):
         "calculated with rigid contacts. All other results of the mechanism end at `hand_over.time_s`"
     )
     violated: list[str] = fact("other violated assumptions, one sentence each (chaotic response, impact rules)")
-    stack: StackRocking = maybe("of two stacked blocks")
+    stack: StackRocking = maybe("results of two stacked blocks")
     soft_base: SoftBaseRocking = maybe("results of a compliant base ([supports] stiffness)")
     thrust_line_residual_m: float = maybe(
         "for an arch: greatest distance between the thrust line and the last hinge, through which it should pass", "m"
@@ -261,7 +261,7 @@ class AtAmplitudes(ResultModel):
 class RuleCurve(ResultModel):
     """The failure curve by an impact rule."""
 
-    rule: str = fact("word of [joints] restitution")
+    rule: str = fact("impact rule: a value of [joints] `restitution`")
     restitution: float = fact(
         "coefficient of restitution (angular velocity after / before impact), limited to values from 0 "
         "to 1; for a mechanism, at the impact that starts rocking towards +x"
@@ -327,8 +327,8 @@ class FailureDomain(KindResults):
         elsewhere = least_beside(places, self.hinges_elsewhere_from_g, duration)
         if elsewhere is not None and amplitude >= elsewhere and not decided:
             found.append(
-                f"For pulses of {duration:.3g} s, hinges form outside the rocking mechanism from an amplitude of {elsewhere:.3g} g upwards. "
-                "Use dem."
+                f"For pulses of {duration:.3g} s, hinges form outside the rocking mechanism from an amplitude of "
+                f"{elsewhere:.3g} g upwards. Use dem."
             )
         curves = [(one.rule, between(places, one.amplitudes_g, duration)) for one in self.amplitudes_by_rule or []]
         fails = {rule: capacity is not None and amplitude >= capacity for rule, capacity in curves}
@@ -368,8 +368,8 @@ class MotionImpulse(ResultModel):
 
     name: str = fact("the motion")
     amplitude_g: float = fact("amplitude of the sine, with its sign", "g")
-    period_s: float = fact("its period", "s")
-    start_s: float = fact("when it starts", "s")
+    period_s: float = fact("period of the sine", "s")
+    start_s: float = fact("time at which the sine starts", "s")
     goodness_of_fit: float = fact(
         "goodness of fit: share of the integral of the squared acceleration, over the duration of the sine, that the sine explains"
     )
@@ -477,7 +477,7 @@ class PrimaryImpulse(ResultModel):
 
     amplitude_g: float = fact("amplitude, with its sign", "g")
     period_s: float = fact("period", "s")
-    start_s: float = fact("when it starts", "s")
+    start_s: float = fact("time at which the sine starts", "s")
     goodness_of_fit: float = fact(
         "goodness of fit: share of the integral of the squared acceleration, over the duration of the sine, that the sine explains"
     )
@@ -495,7 +495,7 @@ class AssessedImpulse(PrimaryImpulse):
     margin: float | None = fact(
         "safety factor: failure amplitude divided by the amplitude of the impulse; null if the period is too short to cause collapse"
     )
-    verdict: Literal["stands", "fails"] = fact("whether the impulse causes collapse according to the failure curve")
+    verdict: Literal["stands", "fails"] = fact("verdict of the failure curve on the impulse: stands, or fails (collapse)")
 
 
 class Assessment(KindResults):
@@ -509,7 +509,7 @@ class Assessment(KindResults):
     coefficients_of_this_arch: Coefficients = fact("coefficients of the failure curve fitted to this structure")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     impulses: list[AssessedImpulse] = fact("strongest impulses of the motion, each compared with the failure curve")
-    verdict: Literal["stands", "fails"] = fact("whether an impulse of the motion causes collapse according to the failure curve")
+    verdict: Literal["stands", "fails"] = fact("verdict of the failure curve on the impulses of the motion: stands, or fails (collapse)")
     run_outcome: RockingOutcome | None = fact("outcome under the whole motion, from the equation of motion")
     margin: float | None = fact(
         "lowest safety factor of all impulses (failure amplitude divided by amplitude); null if no impulse can cause collapse"

@@ -18,13 +18,13 @@ class Bilinear(ResultModel):
 
     stiffness_N_m: float = fact("secant stiffness at 60 % of the peak load", "N/m")
     yield_load_N: float = fact("load of the plateau", "N")
-    yield_displacement_m: float = fact("displacement at its start", "m")
+    yield_displacement_m: float = fact("displacement at the start of the plateau", "m")
     ultimate_displacement_m: float = fact(
         "ultimate displacement: displacement at which the load has decreased to 80 % of the peak, "
         "or the last displacement if the load has not decreased so far",
         "m",
     )
-    ductility: float = fact("ultimate over yield displacement")
+    ductility: float = fact("ductility: ultimate displacement divided by yield displacement")
 
 
 class Makeup(ResultModel):
@@ -69,7 +69,7 @@ class SlaCurve(ResultModel):
     greatest_load_displacement_m: float | None = fact("control displacement at the greatest load", "m")
     greatest_load_event: int | None = fact("number of the event at the greatest load, counted from 1")
     first_event_load_N: float | None = fact("load of the first event", "N")
-    events: int = fact("events of this run")
+    events: int = fact("number of events of this run")
     events_before_resume: int = fact("number of events in the earlier runs that this run continues")
     events_without_equilibrium: int = fact(
         "number of events for which no load multiplier satisfies the strengths at every integration point"
@@ -80,17 +80,17 @@ class SlaCurve(ResultModel):
     )
     first_event_without_equilibrium: int | None = fact("number of the first event without equilibrium, counted from 1")
     stop: str = fact("why the run ended")
-    secondary_cracks: int = fact("events of second cracks")
-    damaged_points: int = fact("points that cracked")
-    closings: int = fact("cracks that closed")
-    crushing_events: int = fact("events of crushing")
+    secondary_cracks: int = fact("number of events with a second crack at a point")
+    damaged_points: int = fact("number of integration points that cracked")
+    closings: int = fact("number of events in which a crack closed")
+    crushing_events: int = fact("number of crushing events")
     last_load_N: float | None = fact("load of the last event that is in equilibrium", "N")
-    last_displacement_m: float | None = fact("control displacement of that event", "m")
+    last_displacement_m: float | None = fact("control displacement of the last event that is in equilibrium", "m")
     energy_residual_ratio: float = fact("error of the energy balance, divided by the work of the loads")
     external_work_J: float | None = fact(
         "work of all loads up to the last event in equilibrium, calculated with linear changes of displacement between events", "J"
     )
-    stored_energy_J: float | None = fact("elastic energy at that event", "J")
+    stored_energy_J: float | None = fact("elastic energy at the last event in equilibrium", "J")
     dissipated_energy_J: float | None = fact(
         "dissipated energy (with friction) up to the last event in equilibrium; it never decreases. It is the work of the loads minus "
         "the stored energy, summed from one equilibrium state to the next. Events without equilibrium count with the area of their teeth",
@@ -135,11 +135,11 @@ class SlaCurve(ResultModel):
     drop_displacement_m: float | None = maybe(
         "control displacement at which the envelope of the load has decreased to 80 % of the peak; null if not reached", "m"
     )
-    drop_drift: float | None = maybe("drift there")
+    drop_drift: float | None = maybe("drift at `drop_displacement_m`")
     axial_loss_displacement_m: float | None = maybe(
         "last control displacement at which the constant loads are still carried; null if they are carried to the end", "m"
     )
-    axial_loss_drift: float | None = maybe("drift there")
+    axial_loss_drift: float | None = maybe("drift at `axial_loss_displacement_m`")
     seconds_per_event: float = fact("computing time of an event", "s")
     events_of_constant_loads: int = fact("number of events during the application of the constant loads")
     probe_loads_N: list[float | None] = maybe(
@@ -161,19 +161,19 @@ class SlaStage(SlaCurve):
 
     name: str = fact("its name, or its number")
     prefix: str = fact("prefix of the array names of this stage; empty for the stage that gives the results of the analysis")
-    start_load_N: float = fact("load at its start", "N")
-    end_load_N: float | None = fact("load at its end", "N")
+    start_load_N: float = fact("load at the start of the stage", "N")
+    end_load_N: float | None = fact("load at the end of the stage", "N")
 
 
 class Scatter(ResultModel):
     """Repetitions with other seeds of mesh and strength."""
 
     seeds: list[int] = fact("the seeds")
-    peak_loads_N: list[float] = fact("peak load of each", "N")
-    mean_N: float = fact("their mean", "N")
+    peak_loads_N: list[float] = fact("peak load with each seed", "N")
+    mean_N: float = fact("mean of the peak loads", "N")
     coefficient_of_variation: float | None = fact("coefficient of variation of the peak loads; null for a single seed")
-    lowest_N: float = fact("the lowest", "N")
-    highest_N: float = fact("the highest", "N")
+    lowest_N: float = fact("lowest peak load", "N")
+    highest_N: float = fact("highest peak load", "N")
 
 
 class Comparison(ResultModel):

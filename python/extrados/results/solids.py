@@ -13,22 +13,22 @@ class OpenContact(ResultModel):
     """A contact that opens or slides in a mechanism."""
 
     joint: int = fact("number of the contact")
-    name: str = fact("its name")
+    name: str = fact("name of the contact")
     opening: float = fact(
         "opening rate at the fastest corner of the contact, divided by the velocity of the fastest point of the mechanism"
     )
     sliding: float = fact(
         "sliding rate at the fastest corner of the contact, divided by the velocity of the fastest point of the mechanism"
     )
-    x_m: float = fact("x of its middle", "m")
-    y_m: float = fact("y of its middle", "m")
-    z_m: float = fact("z of its middle, upward", "m")
+    x_m: float = fact("x of the middle of the contact", "m")
+    y_m: float = fact("y of the middle of the contact", "m")
+    z_m: float = fact("z of the middle of the contact (upwards)", "m")
 
 
 class Pyramids(ResultModel):
     """Bounds by friction pyramids, from a linear programme."""
 
-    sides: int = fact("sides of the pyramids")
+    sides: int = fact("number of sides of the pyramids")
     lower_g: float | None = fact(
         "lower bound of the collapse acceleration, with pyramids inscribed in the friction cones; null if the structure then cannot stand",
         "g",
@@ -46,7 +46,7 @@ class BlockSize(ResultModel):
     blocks: int | None = fact("number of blocks after this change; null if the change is not possible")
     collapse_acceleration_g: float | None = fact("upper bound of the collapse acceleration along the direction; null without a result", "g")
     relative_change: float | None = fact("relative difference of this upper bound from the upper bound with the blocks of the deck")
-    reason: str | None = fact("why there is no value")
+    reason: str | None = fact("reason why there is no value")
 
 
 class SolidNonDilatant(ResultModel):
@@ -93,8 +93,8 @@ class SolidTilt(KindResults):
     load_direction_deg: float = fact("direction of the load in plan, as an angle from +x towards +y", "deg")
     least_acceleration_g: float = fact("lowest collapse acceleration of all directions that were searched", "g")
     least_direction_deg: float = fact("direction of the load with the lowest collapse acceleration", "deg")
-    blocks: int = fact("stones")
-    contacts: int = fact("polygons along which they touch")
+    blocks: int = fact("number of blocks")
+    contacts: int = fact("number of contacts (polygons along which blocks touch)")
     moving_blocks: int = fact("number of blocks that move in the mechanism, at more than 1/1000 of the speed of the fastest block")
     fastest_block: str = fact("block whose centroid moves fastest")
     opening_contacts: list[OpenContact] = fact("contacts that open or slide; the 20 fastest are listed")
@@ -173,7 +173,7 @@ class SolidTilt(KindResults):
 class SectionThrust(ResultModel):
     """Horizontal thrust of a section of blocks in space: the sum over its contacts."""
 
-    name: str = fact("its name")
+    name: str = fact("name of the section")
     direction: str = fact("direction of the thrust at each contact: a direction in plan, or outward from the middle of the structure")
     contacts: int = fact("contacts of the section")
     least_N: float | None = fact("minimum thrust, summed over the contacts; null if the thrust has no minimum", "N")
@@ -198,9 +198,9 @@ class SolidThrust(KindResults):
         "least central part of the contacts in which an equilibrium state exists (the most central state)"
     )
     required_friction: float | None = fact("greatest coefficient of friction that the most central state needs")
-    required_friction_contact: str | None = fact("contact with this greatest requirement")
-    blocks: int = fact("stones")
-    contacts: int = fact("polygons along which they touch")
+    required_friction_contact: str | None = fact("contact with the greatest required friction")
+    blocks: int = fact("number of blocks")
+    contacts: int = fact("number of contacts (polygons along which blocks touch)")
     weight_N: float = fact("weight of the structure and of the weights placed on it", "N")
     dilating: bool = fact(
         "whether contacts slide in the mechanisms at the ends of `admissible_interval_g`. These ends are then upper bounds (dilatant "

@@ -18,7 +18,7 @@ class Sensitivity(ResultModel):
         "first-order Sobol index of the outcome (collapse 1, otherwise 0); null if all runs have the same outcome"
     )
     collapse_first_interval: list[float | None] = fact("its bootstrap interval")
-    collapse_total: float | None = fact("total index of the collapse")
+    collapse_total: float | None = fact("total Sobol index of the outcome (collapse 1, otherwise 0)")
     collapse_total_interval: list[float | None] = fact("its bootstrap interval")
 
 
@@ -34,12 +34,12 @@ class Annual(KindResults):
     annual_collapse_rate_left_out: float = maybe(
         "part of the collapse rate that intensities beyond the ends of the hazard curve may add", "1/year"
     )
-    collapse_return_period_years: float | None = maybe("its inverse", "year")
+    collapse_return_period_years: float | None = maybe("return period of collapse: 1 divided by the annual collapse rate", "year")
     years: float = maybe("number of years to which `collapse_probability_in_years` refers", "year")
     collapse_probability_in_years: float = maybe("probability of collapse within `years`, if earthquakes are independent events")
-    collapse_probability_in_years_interval: list[float | None] = maybe("its interval")
+    collapse_probability_in_years_interval: list[float | None] = maybe("confidence interval of `collapse_probability_in_years`")
     decisive_intensity: float = maybe("intensity at which the contribution to the collapse rate is greatest, in `intensity_unit`")
-    acceptable_annual_rate: float | None = maybe("rate that the deck accepts", "1/year")
+    acceptable_annual_rate: float | None = maybe("annual collapse rate that the deck accepts", "1/year")
 
     def judged_by_rate(self, violated: list[str]) -> Verdict | None:
         """The annual rate against the accepted one; open where the interval holds both. None without a hazard."""
@@ -85,14 +85,18 @@ class MeasureDispersion(ResultModel):
 class Ensemble(Annual):
     """fragility: one structure under many motions, each as it is."""
 
-    count: int = fact("runs with a result")
-    failed: int = fact("runs without one")
-    collapsed: int = fact("runs that collapse")
+    count: int = fact("number of runs with a result")
+    failed: int = fact("number of runs without a result")
+    collapsed: int = fact("number of runs that collapse")
     collapse_probability: float | None = fact("collapse probability: share of the runs that collapse")
-    confidence_interval: list[float] = fact("its score interval", source="Wilson 1927")
-    uplifted: int = fact("runs that rock")
+    confidence_interval: list[float] = fact(
+        "confidence interval (Wilson score, level `confidence`) of `collapse_probability`", source="Wilson 1927"
+    )
+    uplifted: int = fact("number of runs in which rocking starts")
     uplift_probability: float | None = fact("share of the runs in which rocking starts")
-    uplift_confidence_interval: list[float] = fact("its score interval", source="Wilson 1927")
+    uplift_confidence_interval: list[float] = fact(
+        "confidence interval (Wilson score, level `confidence`) of `uplift_probability`", source="Wilson 1927"
+    )
     mean_peak_rotation_ratio: float | None = fact(
         "mean of the peak rotation divided by the critical rotation; a run that collapses counts as 1"
     )
@@ -160,7 +164,7 @@ class Ensemble(Annual):
 class RuleShares(ResultModel):
     """Probabilities of collapse by an impact rule."""
 
-    rule: str = fact("word of [joints] restitution")
+    rule: str = fact("impact rule: a value of [joints] `restitution`")
     restitution: float = fact(
         "coefficient of restitution (angular velocity after / before impact), limited to values from 0 "
         "to 1; for a mechanism, at the impact that starts rocking towards +x"
@@ -177,16 +181,16 @@ class LevelShares(Annual):
     motions: int = fact("number of motions")
     sliding_share: list[float | None] = fact("share of the motions in which blocks slide, at each level of intensity")
     count: list[int] = fact("number of motions with a result, at each level of intensity")
-    failed: int = fact("runs without a result")
+    failed: int = fact("number of runs without a result")
     collapsed: list[int] = fact("number of motions that cause collapse, at each level of intensity")
     collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each level of intensity")
     confidence_interval: list[list[float]] = fact(
-        "95 % confidence intervals (Wilson score) of the probability of collapse", source="Wilson 1927"
+        "confidence intervals (Wilson score, level `confidence`) of the probability of collapse", source="Wilson 1927"
     )
     uplifted: list[int] = fact("number of motions under which rocking starts, at each level of intensity")
     uplift_probability: list[float | None] = fact("share of the motions under which rocking starts, at each level of intensity")
     uplift_confidence_interval: list[list[float]] = fact(
-        "95 % confidence intervals (Wilson score) of the share of motions under which rocking starts", source="Wilson 1927"
+        "confidence intervals (Wilson score, level `confidence`) of the share of motions under which rocking starts", source="Wilson 1927"
     )
     median_pga_g: list[float | None] = fact("median peak acceleration of the scaled motions, at each level of intensity", "g")
     confidence: float = fact("level of all intervals")
@@ -369,11 +373,11 @@ class OverDurations(KindResults):
     collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each duration")
     uplift_probability: list[float | None] = fact("share of the motions under which rocking starts, at each duration")
     confidence_interval: list[list[float]] = fact(
-        "95 % confidence intervals (Wilson score) of the probability of collapse", source="Wilson 1927"
+        "confidence intervals (Wilson score, level `confidence`) of the probability of collapse", source="Wilson 1927"
     )
     confidence: float = fact("level of these intervals")
     count: list[int] = fact("number of motions with a result, at each duration")
-    failed: int = fact("runs without a result")
+    failed: int = fact("number of runs without a result")
     collapsed: list[int] = fact("number of motions that cause collapse, at each duration")
     uplifted: list[int] = fact("number of motions under which rocking starts, at each duration")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
@@ -407,13 +411,13 @@ class Resonance(KindResults):
 
     outcome: RockingOutcome = fact("outcome under that motion")
     cap_g: float = fact("cap of the ground acceleration", "g")
-    cap_ratio: float = fact("cap over the uplift acceleration")
+    cap_ratio: float = fact("cap of the ground acceleration, divided by the uplift acceleration")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     initial_rotation_ratio: float = fact("rotation at the start, divided by the critical rotation")
     half_cycles: int = fact("number of changes of sign of the motion")
     collapse_time_s: float | None = fact("time after which the structure can no longer recover", "s")
-    switch_times_s: list[float] = fact("when the motion changes sign", "s")
-    switch_spacing_s: list[float] = fact("time between them", "s")
+    switch_times_s: list[float] = fact("times at which the motion changes sign", "s")
+    switch_spacing_s: list[float] = fact("time between changes of sign", "s")
     peak_rotation_rad: list[float] = fact("rotation at the start, and at each change of sign of the motion", "rad")
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
@@ -434,7 +438,7 @@ class Resonance(KindResults):
         "ratios B/H; columns: initial rotations",
         source="thesis Fig. 6-3",
     )
-    aspects: list[float] = maybe("their B/H", source="thesis Fig. 6-3")
+    aspects: list[float] = maybe("aspect ratios B/H of the blocks in `least_cap_ratios`", source="thesis Fig. 6-3")
     initial_ratios: list[float] = maybe("rotations at the start, divided by the critical rotation", source="thesis Fig. 6-3")
     impulse_amplitude_g: float = maybe(
         "for a block: amplitude of the impulses of `share_of_starts_that_add`", "g", source="thesis Fig. 6-4"
@@ -468,7 +472,7 @@ class Resonance(KindResults):
 class RuleSpectrum(ResultModel):
     """Sizes that overturn by an impact rule."""
 
-    rule: str = fact("word of [joints] restitution")
+    rule: str = fact("impact rule: a value of [joints] `restitution`")
     restitution: float = fact("coefficient of restitution (angular velocity after / before impact), limited to 0 to 1")
     overturned: int = fact("sizes that collapse")
 
@@ -503,7 +507,7 @@ class RockingSpectrum(KindResults):
 class HarmonicMap(KindResults):
     """harmonic-map: response to harmonic motion over frequency and amplitude."""
 
-    cycles: int = fact("cycles of the motion")
+    cycles: int = fact("number of cycles of the motion")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     frequencies_Hz: list[float] = fact("frequencies", "Hz")
     frequency_ratios: list[float] = fact("omega/p of the frequencies")
