@@ -223,7 +223,9 @@ class SolidThrust(KindResults):
                 f"At {self.gamma_g:g} g, the resultants of an equilibrium state pass through the middle 1 % of all contacts.", 0.0, 1.0
             )
         return judge(
-            f"At {self.gamma_g:g} g, an equilibrium state stays within the middle {100.0 * part:.3g} % of the contacts.", part, 1.0
+            f"At {self.gamma_g:g} g, the resultants of an equilibrium state stay within the middle {100.0 * part:.3g} % of the contacts.",
+            part,
+            1.0,
         )
 
 

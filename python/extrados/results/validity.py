@@ -175,8 +175,8 @@ Modes = Validity(
 )
 FrameModes = Validity(
     "Piers and spandrels vibrate about the equilibrium under self-weight. Walls have no out-of-plane stiffness.",
-    "Sections that are open under self-weight stay open. The masses of walls out of their planes "
-    "move with the corners, and linearly between corners.",
+    "Sections that are open under self-weight stay open. Out of their planes, the masses of walls "
+    "move with the corners, and linearly between them.",
 )
 FramePushover = Validity(
     "Walls are plane frames of piers and spandrels between rigid nodes. Sections carry no tension and crush; piers "

@@ -55,7 +55,7 @@ class DisplacementCheck(ResultModel):
 class BuildingFragility(ResultModel):
     """Lognormal fragility by N2 over a set of motions, each scaled; its scatter is that of the motions alone."""
 
-    limit_state: str = fact("limit state; the first of all capacity curves to reach its displacement capacity counts")
+    limit_state: str = fact("limit state, reached as soon as one of the capacity curves reaches its displacement capacity")
     motions: int = fact("motions that were used")
     median_pga_g: float = fact("median of the peak ground accelerations that the building can carry", "g")
     dispersion: float = fact("standard deviation of the logarithms of these accelerations")
