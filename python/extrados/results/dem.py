@@ -141,8 +141,7 @@ class BlocksRun(KindResults):
     )
     edge_stress_at_rest_Pa: float | None = maybe(
         "greatest compressive stress at an edge or corner of a joint at rest under self-weight: linear pressure without tension; "
-        "null if an "
-        "edge or a corner alone carries the load",
+        "null if an edge or a corner alone carries the load",
         "Pa",
     )
     ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each of its segments")
