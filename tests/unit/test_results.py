@@ -183,7 +183,7 @@ def test_a_pulse_against_failure_curves() -> None:
     )
     slides = domain.judged(Asked(pulse="step", duration_s=0.4, amplitude_g=0.92))
     assert slides.outcome == "open" and slides.violated == [
-        "At this duration, blocks slide from an amplitude of 0.9 g upwards. Use dem, or check the friction."
+        "For pulses of 0.4 s, blocks slide from an amplitude of 0.9 g upwards. Use dem, or check the friction."
     ]
     elsewhere = domain.judged(Asked(pulse="step", duration_s=0.3, amplitude_g=0.96))
     assert elsewhere.outcome == "open" and len(elsewhere.violated) == 2

@@ -207,7 +207,7 @@ def test_a_central_network_outside_the_blocks_leaves_the_verdict_open() -> None:
     for outside, outcome in ((0.004, "stands"), (0.006, "open")):
         verdict = _results(central_outside_m=outside).judged(STILL)
         assert verdict.outcome == outcome
-        assert ("leaves the blocks by up to 6 mm" in verdict.statement) == (outcome == "open")
+        assert ("pass outside the blocks by up to 6 mm" in verdict.statement) == (outcome == "open")
 
 
 @pytest.mark.parametrize(("lines", "leaves"), [(6, True), (20, False)])

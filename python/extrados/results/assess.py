@@ -17,37 +17,37 @@ class AssessHazard(ResultModel):
     """What the ground does, as the strategies are asked."""
 
     kind: str = fact("kind of [motion]")
-    told: str = fact("in words")
+    told: str = fact("description of the hazard in words")
     motions: int = fact("number of motions")
-    member: int = maybe("number (counted from 1), in the set of motions, of the motion that strategies with a single motion use")
+    member: int = maybe("for strategies that use one motion only: its number in the set of motions, counted from 1")
     chosen_by: str = maybe("rule that selected this motion from the set")
     peak_ground_acceleration_g: float = fact("peak ground acceleration: the demand for strategies that apply a constant acceleration", "g")
     peak_told: str = fact("source of that peak")
     pulse_amplitude_g: float | None = fact("amplitude of the primary impulse; null if the motion has none", "g")
-    pulse_period_s: float | None = fact("its period; null: none", "s")
+    pulse_period_s: float | None = fact("period of the primary impulse; null if the motion has none", "s")
 
 
 class StrategyVerdict(ResultModel):
     """Verdict of one strategy."""
 
     strategy: str = fact("kind of analysis; `probability` means `fragility` with uncertain sizes or many motions")
-    label: str = fact("its name in words")
+    label: str = fact("name of the strategy in words")
     part: str | None = fact("name of the analysis of this run that holds the results; null without a result")
-    status: RowStatus = fact("whether it has a result")
+    status: RowStatus = fact("status of the strategy: whether it has a result")
     reason: str = fact("reason why the strategy has no result; empty if it has one")
     axis: Axis = fact("quantity that is compared")
     demand: float | None = fact("demand, in `unit`")
     capacity: float | None = fact("capacity, in `unit`")
-    unit: str = fact("unit of both")
+    unit: str = fact("unit of demand and capacity")
     outcome: Outcome = fact("outcome: stands, collapses, cannot-stand, open (not decided) or not-applicable")
     bound: Bound | None = fact("type of the capacity: exact, lower bound or upper bound; null for an estimate")
     violated: list[str] = fact("violated assumptions of the strategy; if there are any, the outcome is open (not decided)")
-    margin: float | None = fact("critical scale factor of the hazard; null if not known")
+    margin: float | None = fact("critical scale factor of the hazard: collapse occurs at greater factors; null if not known")
     margin_at_least: float | None = fact("greatest scale factor of the hazard that was run without collapse; null if no such run")
     margin_below: float | None = fact("least scale factor of the hazard that was run with collapse; null if no such run")
     parameters: str = fact("settings of the strategy, and the rule that selected them")
     assumes: str = fact("assumptions of the strategy")
-    statement: str = fact("its verdict in one sentence")
+    statement: str = fact("verdict of the strategy in one sentence")
 
     @property
     def verdict_words(self) -> str:
@@ -80,7 +80,7 @@ class Probe(ResultModel):
 
     strategy: str = fact("kind of analysis")
     changed: str = fact("difference from the deck")
-    outcome: Outcome = fact("its verdict")
+    outcome: Outcome = fact("verdict of this additional run")
     value: float | None = fact("ratio of demand to capacity in this additional run; null if not known")
 
 
@@ -89,10 +89,10 @@ class TurningValue(ResultModel):
     know, how far their stones move."""
 
     key: str = fact("the key of the deck")
-    base: float = fact("its value, in `unit`")
+    base: float = fact("value of the key in the deck, in `unit`")
     unit: str = fact("unit of the value")
-    low: float = fact("a value below")
-    high: float = fact("a value above")
+    low: float = fact("value below that of the deck")
+    high: float = fact("value above that of the deck")
     tilt_base: float | None = fact("safety factor by limit analysis, with the value of this key in the deck; null without a result")
     rocking_base: float | None = fact("safety factor by rocking, with the value of this key in the deck; null without a result")
     tilt_low: float | None = fact("safety factor by limit analysis, with the value `low` of this key; null without a result")
@@ -134,7 +134,8 @@ class Contribution(ResultModel):
     low: float = fact("lower end of the 90 % confidence interval of `probability`")
     high: float = fact("upper end of the 90 % confidence interval of `probability`")
     weight: float = fact(
-        "weight of this strategy in the overall probability of collapse: its share of the experiments with which the strategies were compared"
+        "weight of this strategy in the overall probability of collapse: "
+        "its share of the experiments with which the strategies were compared"
     )
 
 
@@ -155,18 +156,22 @@ class CollapseProbability(ResultModel):
     The first comes from the model uncertainty of the strategies. The second is a count of dynamic runs.
     """
 
-    in_motion: CollapseInMotion = maybe("probability of collapse by rocking under the motion itself")
+    in_motion: CollapseInMotion = maybe("probability of collapse under the motion itself: share of the rocking runs that collapse")
     probability: float | None = fact(
         "probability of collapse if the peak acceleration acts as a constant horizontal acceleration: weighted mean over the "
         "strategies; 1 if a certificate proves collapse; null if no strategy contributes"
     )
     low: float | None = fact(
-        "lowest lower end of the 90 % confidence intervals of all strategies that contribute; null if no strategy contributes"
+        "lower end of the interval of `probability`: least of the lower ends of the 90 % confidence intervals of the strategies that "
+        "contribute; null if no strategy contributes"
     )
     high: float | None = fact(
-        "highest upper end of the 90 % confidence intervals of all strategies that contribute; null if no strategy contributes"
+        "upper end of the interval of `probability`: greatest of the upper ends of the 90 % confidence intervals of the strategies that "
+        "contribute; null if no strategy contributes"
     )
-    contributions: list[Contribution] = fact("strategies whose capacity is compared with known results in the verification book")
+    contributions: list[Contribution] = fact(
+        "strategies that contribute to `probability`: their capacities are compared with known results in the verification book"
+    )
     without: dict[str, str] = fact("strategies that do not contribute to the probability, each with the reason")
     statement: str = fact("the probability in words")
     method: str = fact("text that explains how the probability is derived")
@@ -182,7 +187,7 @@ class Advice(ResultModel):
     mechanism: str = fact("governing collapse mechanism of the existing building")
     interventions: list[Intervention] = fact("alternative interventions; the cheapest that reaches the target comes first")
     by_rocking: Intervention = maybe(
-        "the first tie of `interventions`, with its force changed to the least one at which the building survives rocking under the hazard"
+        "the first tie of `interventions`, with the least yield force at which the building survives rocking under the hazard"
     )
     rocking: dict[str, str] = fact("outcome of rocking under the hazard, for each intervention that reaches the target")
     statement: str = fact("recommendation in words")
@@ -205,15 +210,15 @@ class Assess(KindResults):
     reasons: list[Reason] = fact("why strategies differ")
     unexplained: list[list[str]] = fact("pairs of strategies that differ for a reason that no rule of this program explains")
     parts: dict[str, str] = fact("analyses that the assessment added to this run: name and description")
-    probes: list[Probe] = fact("further runs")
+    probes: list[Probe] = fact("additional runs")
     sensitivity: list[TurningValue] = maybe("sensitivity of the verdicts to each uncertain value; the most decisive value comes first")
     advice: Advice = maybe("strengthening, if not all strategies give the verdict `stands`")
-    not_done: list[str] = fact("steps that were omitted because the time `budget` was used up, and additional runs that decided nothing")
+    not_done: list[str] = fact("steps that were omitted or gave no result, for instance because the time `budget` was used up")
     least_margin: float | None = fact(
         "lowest critical scale factor of the hazard among all strategies; 0 if the building cannot stand; null if no factor is known"
     )
-    least_margin_strategy: str | None = fact("whose it is")
-    budget_s: float = fact("time that it was given", "s")
+    least_margin_strategy: str | None = fact("strategy with the lowest critical scale factor")
+    budget_s: float = fact("time limit of the assessment (key `budget`)", "s")
 
     def judged(self, demand: Demand) -> Verdict:
         """The overall answer; the capacity is the least factor on the hazard."""

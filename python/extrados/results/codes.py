@@ -59,7 +59,7 @@ class Checked(KindResults):
     )
     confidence_factor: float = maybe("confidence factor, by which capacities are divided")
     behaviour_factor: float = maybe("behaviour factor q, which reduces the demand in the linear check of NTC and on a pier")
-    bound: Bound = maybe("type of the capacity by the checks: exact, lower bound or upper bound")
+    bound: Bound = maybe("type of the capacity that the checks give: exact, lower bound or upper bound")
     margin_associated: float | None = maybe(
         "if joints slide: capacity / demand of the governing check with associated (dilatant) friction. If this ratio is at least 1 but "
         "the check without dilatancy fails, the outcome is open. Null without a demand"
@@ -196,15 +196,15 @@ class CodeChecks(Checked):
 class WallMechanism(ResultModel):
     """A wall of a building on a plan above the foot of one of its storeys, or its gable."""
 
-    wall: str = fact("its name")
+    wall: str = fact("name of the wall")
     gable: bool = fact("whether the part is the gable above the highest storey of the wall")
     storey: int = fact(
         "number (counted from 1) of the storey at whose foot the wall rotates; for a gable, the number of the top storey plus one"
     )
-    foot_m: float = fact("height of the foot of this storey above the ground", "m")
+    foot_m: float = fact("height above the ground of the foot about which the wall or the gable rotates", "m")
     multiplier: float = fact("alpha_0")
     activation_acceleration_g: float = fact("a_0*", "g")
-    zero_displacement_m: float | None = fact("d_0*; null: none", "m")
+    zero_displacement_m: float | None = fact("d_0*: displacement at which the multiplier becomes zero; null if none", "m")
     margin: float | None = fact("capacity divided by demand in the governing check; null without a demand")
 
 
@@ -243,7 +243,7 @@ class LocalMechanism(Checked):
     )
     multiplier_associated: float = maybe(
         "if joints slide: alpha_0 with associated (dilatant) friction. The capacity lies between "
-        "`multiplier` (lowest certified state) and this value",
+        "`multiplier` (the lowest certified collapse state) and this value",
         source="Drucker 1954",
     )
 
@@ -263,7 +263,7 @@ class LocalMechanism(Checked):
 class NoLocalMechanism(KindResults):
     """local-mechanism: no local mechanism of the kind that is checked."""
 
-    reason: str = fact("why the building has none")
+    reason: str = fact("reason why the building has no such mechanism")
 
     def statement(self) -> str:
         """The result in words."""

@@ -18,7 +18,8 @@ CollapseCriterion = Literal["rotation", "loss of height", "loss of support", "se
 #: the joint, and so half of the resistance to overturning, is left then
 SLIP_LIMIT = 0.25
 INTERVAL = (
-    "whether blocks slide before collapse at statically indeterminate joints; the collapse acceleration is then one value of an interval"
+    "whether blocks slide before collapse at statically indeterminate joints. If so, the collapse "
+    "acceleration depends on the load path, and a lower value may exist"
 )
 #: What a contact of solids does, in the stored array `state`: CLOSED, open at some corners, APART
 ROCKS = 1
@@ -49,23 +50,23 @@ class Variation(ResultModel):
 class Convergence(ResultModel):
     """How far the impulses of rigid contacts were found."""
 
-    steps: int = fact("time steps")
+    steps: int = fact("number of time steps")
     open_steps: int = fact("number of time steps in which the contact solver did not converge")
     most_rounds: int = fact("greatest number of iterations of the contact solver in one time step")
     factorisations_per_step: float = fact("sparse factorisations per step")
     worst_violation_ratio: float = fact(
         "greatest violation of the contact law (a velocity), divided by the velocity that gravity adds in one time step"
     )
-    worst_violation_s: float = fact("when that was", "s")
+    worst_violation_s: float = fact("time of the greatest violation", "s")
 
 
 class TieRun(ResultModel):
     """What a run asked of a tie or a damper."""
 
     name: str = fact("its name")
-    peak_force_N: float = fact("greatest force in absolute value over all time steps; tension is positive", "N")
-    end_force_N: float = fact("force at the end", "N")
-    plastic_elongation_m: float = fact("plastic elongation at the end of the run; negative for shortening", "m")
+    peak_force_N: float = fact("greatest force of the tie or damper (by absolute value) over all time steps; tension is positive", "N")
+    end_force_N: float = fact("force of the tie or damper at the end of the run", "N")
+    plastic_elongation_m: float = fact("plastic elongation of the tie at the end of the run; negative for shortening", "m")
     state: Literal["slack", "elastic", "yielded", "viscous"] = fact(
         "state of the tie over the run. slack: never loaded; elastic: below its yield or slip force; yielded: yielded "
         "or slipped at least once; viscous: a viscous damper"
@@ -86,13 +87,14 @@ class BlocksRun(KindResults):
 
     outcome: DemOutcome = fact("outcome: no joint opens or slides; joints slide; joints open and the blocks stand; or collapse")
     collapse_criterion: CollapseCriterion | None = fact(
-        "criterion of collapse, if collapse was found by another criterion than the displacement; null without collapse"
+        "criterion of collapse, in addition to the displacement: rotation, loss of height, loss of support or separation; "
+        "null without collapse"
     )
     governing_block: str = fact("block that collapsed first; without collapse, the block that moved farthest")
-    collapse_time_s: float | None = fact("when the first block collapsed", "s")
-    stopped: str = fact("why the run ended")
-    stopped_by: list[str] = fact("the blocks that ended it")
-    stop_time_s: float = fact("when it ended", "s")
+    collapse_time_s: float | None = fact("time at which the first block collapsed; null without collapse", "s")
+    stopped: str = fact("reason why the run ended")
+    stopped_by: list[str] = fact("blocks that caused the end of the run")
+    stop_time_s: float = fact("time at which the run ended", "s")
     still_moving: bool = fact("whether blocks still moved during the last 5 % of the run")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
     collapse_displacement_m: float = fact("displacement of a block that counts as collapse; not applied to a block that only slides", "m")
@@ -138,12 +140,12 @@ class BlocksRun(KindResults):
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )
     edge_stress_at_rest_Pa: float | None = maybe(
-        "greatest compressive stress at an edge or corner of a joint at rest under self-weight: linear pressure without tension; null if an "
-        "edge alone carries",
+        "greatest compressive stress at an edge or corner of a joint at rest under self-weight: linear pressure without tension; "
+        "null if an edge or a corner alone carries the load",
         "Pa",
     )
     ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each of its segments")
-    convergence: Convergence | None = maybe("of rigid contacts")
+    convergence: Convergence | None = maybe("accuracy of the contact solver (rigid contacts only)")
     joint_stiffness_min_Pa_per_m: float | None = fact("least normal stiffness of the joints", "Pa/m")
     joint_stiffness_max_Pa_per_m: float | None = fact("greatest normal stiffness of the joints", "Pa/m")
     beta_s: float | None = fact("stiffness-proportional damping", "s")
@@ -154,11 +156,11 @@ class BlocksRun(KindResults):
     damping_ratio_edge: float | None = fact(
         "damping ratio (fraction of critical damping) at edge impact; least value of all joints", source="thesis Eq. 7.9"
     )
-    steps: int = fact("time steps")
+    steps: int = fact("number of time steps")
     settling_steps: int = fact("number of time steps until the building was at rest under its weight, before the motion")
     time_step_s: float = fact("time step", "s")
     critical_step_s: float | None = fact("greatest stable time step", "s")
-    contact_searches: int = fact("searches for contacts")
+    contact_searches: int = fact("number of searches for contacts")
     animation: Literal["none", "gif", "mp4"] = fact("the animation that is drawn")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -233,12 +235,12 @@ class BlocksTilt(KindResults):
     interval: bool = fact(INTERVAL)
     energy_residual_ratio: float = fact("error of the energy balance, divided by the total energy exchanged")
     time_step_s: float = fact("time step", "s")
-    steps: int = fact("time steps")
+    steps: int = fact("number of time steps")
     solver: Literal["compliant", "nonsmooth"] = fact(
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )
     ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each of its segments")
-    convergence: Convergence | None = maybe("of rigid contacts")
+    convergence: Convergence | None = maybe("accuracy of the contact solver (rigid contacts only)")
     beta_s: float | None = fact("stiffness-proportional damping", "s")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -252,7 +254,7 @@ class DemTilt(BlocksTilt):
     """dem: the constant acceleration that brings the blocks down."""
 
     load_direction: Literal["+x"] = fact("direction of the load (+x or -x) for which `hinges` are given")
-    hinges: list[NamedHinge] = fact("hinges of the mechanism")
+    hinges: list[NamedHinge] = fact("hinges of the collapse mechanism towards +x")
     hinges_opposite: list[NamedHinge] = fact("hinges of the collapse mechanism towards -x")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
     peak_slip_m: float = fact("greatest slip in the mechanism", "m")
@@ -265,10 +267,10 @@ class SolidDemRun(BlocksRun):
     slip_ratio: float = fact("greatest ratio of the slip of a contact to its least width")
     direction_deg: float = fact("direction of the horizontal motion in plan, as an angle from +x towards +y", "deg")
     horizontal_components: int = fact("number of horizontal components: 2 if a second record acts perpendicular to `direction_deg`")
-    blocks: int = fact("stones")
-    contacts: int = fact("polygons along which they touch")
-    dowels: int = fact("dowels across contacts")
-    dowel_slip_m: float = fact("greatest plastic slip of a dowel, with the slip under self-weight before the motion", "m")
+    blocks: int = fact("number of blocks")
+    contacts: int = fact("number of contacts (polygons along which blocks touch)")
+    dowels: int = fact("number of dowels across contacts")
+    dowel_slip_m: float = fact("greatest plastic slip of a dowel, including the slip under self-weight before the motion", "m")
     dowels_out: int = fact("number of dowels that came out of their holes")
     final_displacement_m: float = fact("greatest displacement of a block at the end of the run", "m")
     peak_opening_m: float = fact("greatest gap at a corner of a contact that is still closed elsewhere", "m")
@@ -284,8 +286,8 @@ class SolidDemTilt(BlocksTilt):
         "tilt of the ground with the same effect as the collapse acceleration in the opposite direction", "deg"
     )
     load_direction_deg: float = fact("direction of the load in plan, as an angle from +x towards +y", "deg")
-    blocks: int = fact("stones")
-    contacts: int = fact("polygons along which they touch")
+    blocks: int = fact("number of blocks")
+    contacts: int = fact("number of contacts (polygons along which blocks touch)")
     opening_contacts: list[str] = fact("contacts (at most 20) that open or slide at the start of collapse; the widest comes first")
     opening_contacts_opposite: list[str] = fact("contacts that open or slide under the load in the opposite direction")
 
@@ -296,7 +298,7 @@ Dem = DemRun | DemTilt | SolidDemRun | SolidDemTilt
 class DemCurve(ResultModel):
     """Shortest failing durations with one set of joints, by one solver."""
 
-    label: str = fact("name of the value that was varied, or name of the other solver")
+    label: str = fact("name of the curve: the value that was varied, or the second solver")
     solver: Literal["compliant", "nonsmooth"] = fact(
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )
@@ -325,7 +327,7 @@ class CellApart(ResultModel):
 class CrossCheck(ResultModel):
     """Springs and rigid contacts side by side, in every cell of amplitudes and durations."""
 
-    cells: int = fact("cells")
+    cells: int = fact("number of cells of the map")
     agreement_ratio: float = fact("share of the cells of the map in which both solvers give the same outcome")
     apart: list[CellApart] = fact("cells of the map in which the two solvers give different outcomes")
 
@@ -346,9 +348,9 @@ class DemDomain(KindResults):
         "shortest duration that causes collapse in the first half cycle, at each amplitude; null if no tried duration does", "s"
     )
     convergence: Convergence | None = maybe("accuracy of the contact solver over all runs (rigid contacts only)")
-    cross_check: CrossCheck | None = maybe("by both solvers")
+    cross_check: CrossCheck | None = maybe("comparison of both solvers in every cell of the map")
     energy_residual_ratio: float = fact("error of the energy balance, divided by the total energy exchanged; greatest value of all runs")
-    steps: int = fact("time steps of all runs")
+    steps: int = fact("number of time steps of all runs")
     four_hinge_mode_I_durations_s: list[float | None] = maybe(
         "for an arch: shortest duration at which the four-hinge mechanism collapses (with or without an impact), at each amplitude", "s"
     )

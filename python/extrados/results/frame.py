@@ -49,11 +49,15 @@ class PierLimits(ResultModel):
     """Control displacements at which the piers of a storey of a wall reach their strength, and their drift limit; null: never."""
 
     wall: str = fact("its name")
-    storey: int = fact("the storey, from 1")
-    first_at_strength_m: float | None = fact("base shear at which the first pier reaches its strength", "m")
-    all_at_strength_m: float | None = fact("base shear at which the last pier reaches its strength", "m")
-    first_at_limit_m: float | None = fact("base shear at which the first pier reaches its drift limit", "m")
-    all_at_limit_m: float | None = fact("base shear at which the last pier reaches its drift limit", "m")
+    storey: int = fact("number of the storey, counted from 1")
+    first_at_strength_m: float | None = fact("control displacement at which the first pier reaches its strength; null if none does", "m")
+    all_at_strength_m: float | None = fact(
+        "control displacement at which the last pier reaches its strength; null if not all piers do", "m"
+    )
+    first_at_limit_m: float | None = fact("control displacement at which the first pier reaches its drift limit; null if none does", "m")
+    all_at_limit_m: float | None = fact(
+        "control displacement at which the last pier reaches its drift limit; null if not all piers do", "m"
+    )
 
 
 class FailedElement(ResultModel):
@@ -68,18 +72,18 @@ class FramePush(ResultModel):
     """One pushover."""
 
     name: str = fact("direction, pattern and eccentricity")
-    direction_deg: float = fact("on the plan", "deg")
-    sense: Literal["+", "-"] = fact("sense of the load. +: along the direction; -: against it")
-    pattern: str = fact("of the forces")
+    direction_deg: float = fact("direction of the load in plan, as an angle from +x", "deg")
+    sense: Literal["+", "-"] = fact("sense of the load. +: in the direction `direction_deg`; -: in the opposite direction")
+    pattern: str = fact("distribution of the lateral forces")
     eccentricity: float = fact("accidental eccentricity, divided by the length of the building perpendicular to the load")
-    stop: str = fact("why it ended")
-    lost_at: str = maybe("if no equilibrium was found: place where the frame moves most at the end")
+    stop: str = fact("reason why the run ended")
+    lost_at: str = maybe("if the run ends without equilibrium: the node or wall that moves most, in words")
     control_displacement_m: list[float] = fact(
         "mean displacement of the masses on the control level, positive in the direction of the load", "m"
     )
-    base_shear_N: list[float] = fact("base shear along the sense", "N")
+    base_shear_N: list[float] = fact("base shear, positive in the direction of the load", "N")
     peak_base_shear_N: float = fact("greatest base shear", "N")
-    displacement_at_peak_m: float = fact("control displacement there", "m")
+    displacement_at_peak_m: float = fact("control displacement at the greatest base shear", "m")
     drop_displacement_m: float | None = fact(
         "control displacement at which the base shear has decreased by 20 %; null if it does not decrease so far", "m"
     )
@@ -122,8 +126,8 @@ class WallDeflection(ResultModel):
     height_m: float = fact("height above the ground at which the deflection is greatest", "m")
     reached: bool = fact("whether the acceleration decreases with further deflection; if not, the acceleration is a lower bound")
     rigid_acceleration_g: float | None = fact(
-        "collapse multiplier of the weakest rigid part of the wall above a storey (local-mechanism, without confidence factor, same "
-        "position of the hinge); null if floors restrain the wall, or with a warning",
+        "least collapse multiplier of the wall as a rigid body that rotates out of its plane about the foot of a storey (local-mechanism, "
+        "without confidence factor); null if floors restrain the wall, or if a warning says that the multiplier is not calculated",
         "g",
     )
     held_at_m: list[float] = fact("heights at which rigid floors or props restrain the wall", "m")
@@ -134,7 +138,7 @@ class FramePushover(KindResults):
 
     runs: list[FramePush] = fact("all pushovers")
     governing: str = fact("name of the pushover with the least base shear")
-    base_shear_N: float = fact("its greatest base shear", "N")
+    base_shear_N: float = fact("greatest base shear of the governing pushover", "N")
     ultimate_displacement_m: float | None = fact("ultimate displacement of the governing pushover; null if not reached", "m")
     failed: list[FailedElement] = fact(
         "elements that exceed their drift limits in the governing pushover, in the order in which they reach them"
@@ -204,12 +208,12 @@ class FrameLimitCurve(ResultModel):
 
     limit_state: FrameLimitState = fact("strength, first-limit or collapse")
     exceeded: int = fact(
-        "number of runs that exceed the limit state; of pushovers, number of buildings that exceed it under their unscaled motion"
+        "number of runs that exceed the limit state; for pushovers, number of sampled buildings that exceed it under their unscaled motion"
     )
-    share: float = fact("share of the runs that have a result")
-    share_interval: list[float] = fact("interval of that share (Wilson)")
+    share: float = fact("share of the runs with a result that exceed the limit state")
+    share_interval: list[float] = fact("confidence interval of `share` (Wilson score, level `confidence`)")
     median_g: float | None = fact("median of the lognormal fragility curve; null if the runs are not enough to fit a curve", "g")
-    dispersion: float | None = fact("its logarithmic standard deviation")
+    dispersion: float | None = fact("logarithmic standard deviation of the fragility curve")
     median_interval_g: list[float] | None = fact("confidence interval of the median; null if not known", "g")
     probability: list[float | None] = maybe("share of the motions that exceed the limit state, at each level of intensity")
 
@@ -218,49 +222,51 @@ class FrameFragility(KindResults):
     """frame-fragility: probability that a building exceeds its limit states, over motions and uncertain values."""
 
     method: Literal["history", "pushover"] = fact("history, or pushover with N2")
-    intensity: str = fact("measure of the motions")
+    intensity: str = fact("intensity measure of the motions")
     motions: int = fact("motions")
     limit_states: list[FrameLimitCurve] = fact("fragility curves; the least severe limit state comes first")
-    confidence: float = fact("of the intervals")
+    confidence: float = fact("level of the confidence intervals")
     uncertain: list[str] = fact("names of the uncertain values")
     histories: int = maybe("for time histories: number of runs with a result")
     buildings: int = maybe("for pushovers: number of sampled buildings")
     levels_g: list[float] = maybe("levels of the intensity", "g")
     drift_16: list[float | None] = maybe(
-        "16th percentile of the greatest pier drift, at each level of intensity; null if this percentile is collapse"
+        "16th percentile of the greatest pier drift, at each level of intensity; null if this percentile corresponds to collapse"
     )
-    drift_50: list[float | None] = maybe("the median of it")
+    drift_50: list[float | None] = maybe(
+        "median of the greatest pier drift, at each level of intensity; null if the median corresponds to collapse"
+    )
     drift_84: list[float | None] = maybe(
-        "84th percentile of the greatest pier drift, at each level of intensity; null if this percentile is collapse"
+        "84th percentile of the greatest pier drift, at each level of intensity; null if this percentile corresponds to collapse"
     )
     confidence_factor: float = maybe("confidence factor of the code for the knowledge level")
     design_intensity_g: float = maybe(
         "intensity of the median motion at which the building collapses, with all strengths divided by the confidence factor", "g"
     )
     weaker_share: float = maybe(
-        "share of the sampled buildings that collapse, under the same motion, at a lower intensity than `code_median_g`"
+        "share of the sampled buildings that collapse under the median motion at an intensity below `design_intensity_g`"
     )
 
     def judged(self, demand: Demand) -> Verdict:
         """Probabilities, which decide no limit state without an accepted one."""
         worst = self.limit_states[-1]
         median = f"The median {self.intensity} at collapse is {worst.median_g:.3g} g" if worst.median_g else "No curve of collapse"
-        text = f"{median}; {worst.exceeded} runs exceed collapse."
+        text = f"{median}; {worst.exceeded} runs exceed the limit state of collapse."
         return judge(text, None, None, "", "not-applicable")
 
 
 class FrameHistory(KindResults):
     """frame-history: motion of a building as a frame of macro-elements."""
 
-    stop: str = fact("why it ended")
+    stop: str = fact("reason why the run ended")
     end_time_s: float = fact("end of the calculation", "s")
     peak_displacement_m: float = fact(
         "greatest displacement of the control level relative to the ground, along the direction of the motion", "m"
     )
     peak_base_shear_N: float = fact("greatest base shear along the direction of the motion", "N")
-    residual_displacement_m: float = fact("at the end", "m")
+    residual_displacement_m: float = fact("displacement of the control level at the end of the run", "m")
     peak_drift: float = fact("greatest drift (chord rotation) of a pier")
-    peak_drift_element: str = fact("that pier")
+    peak_drift_element: str = fact("pier with the greatest drift")
     failed: list[FailedElement] = fact(
         "elements that exceed their drift limits, in the order in which they reach them, with the control displacement at that instant"
     )

@@ -43,15 +43,15 @@ class Reaction(ResultModel):
 
     joint: int = fact("number of the joint that transfers this force to the ground")
     name: str = fact("its name")
-    horizontal_N: float = fact("to +x", "N")
-    vertical_N: float = fact("upward", "N")
+    horizontal_N: float = fact("horizontal force of the ground on the structure, positive towards +x", "N")
+    vertical_N: float = fact("vertical force of the ground on the structure, positive upwards", "N")
 
 
 class TieForce(ResultModel):
     """What a state of the structure asks of a tie, strut or spring of the deck."""
 
     name: str = fact("its name")
-    force_N: float = fact("force in it, tension positive", "N")
+    force_N: float = fact("force of the tie; tension is positive", "N")
     state: Literal["slack", "carries", "yields"] = fact(
         "state of the tie. slack: no force; carries: below the yield force; yields: at the yield force"
     )
@@ -60,8 +60,8 @@ class TieForce(ResultModel):
 class ChainThrust(ResultModel):
     """Horizontal thrust of an arch of the structure, upright, at its left springing; at its crown where ties hold it."""
 
-    min_N: float = fact("least", "N")
-    max_N: float = fact("greatest", "N")
+    min_N: float = fact("minimum horizontal thrust", "N")
+    max_N: float = fact("maximum horizontal thrust", "N")
 
 
 class Fracture(ResultModel):
@@ -105,10 +105,12 @@ class LoadPath(ResultModel):
         "whether the certificate is satisfied, recalculated independently of the solver: equilibrium, "
         "shear force |s| at most friction mu N, and zero gap"
     )
-    zero_gap_g: float | None = fact("as in non_dilatant", "g")
-    equilibrium_residual: float | None = fact("as in non_dilatant")
-    friction_residual: float | None = fact("as in non_dilatant")
-    overlap_residual: float | None = fact("as in non_dilatant")
+    zero_gap_g: float | None = fact("gap of the certificate, as in `non_dilatant`; null without a certificate", "g")
+    equilibrium_residual: float | None = fact("greatest unbalanced force, as in `non_dilatant`; null without a certificate")
+    friction_residual: float | None = fact(
+        "greatest excess of shear over friction, or greatest tension, divided by the total load; null without a certificate"
+    )
+    overlap_residual: float | None = fact("greatest rate of overlap, as in `non_dilatant`; null without a certificate")
     reason: str = maybe("reason for a missing value")
 
 
@@ -132,9 +134,9 @@ class NonDilatant(ResultModel):
         "g",
         source="Drucker 1954",
     )
-    starts_g: list[float] = fact("collapse load found from each starting point; the lowest is the result", "g")
+    starts_g: list[float] = fact("collapse acceleration found from each starting point of the search; the lowest is the result", "g")
     spread_g: float = fact(
-        "difference between the highest and the lowest collapse load found; collapse states without dilatancy are not unique", "g"
+        "difference between the highest and the lowest value of `starts_g`; collapse states without dilatancy are not unique", "g"
     )
     certified: bool = fact(
         "whether the certificate is satisfied, recalculated independently of the solver: equilibrium, "
@@ -142,7 +144,7 @@ class NonDilatant(ResultModel):
     )
     zero_gap_g: float = fact(
         "gap: collapse acceleration minus (work of friction minus work of the weight), per unit of work "
-        "of the load; zero if forces and motion belong to the same state",
+        "of the load; zero if the forces and the mechanism belong to one collapse state",
         "g",
     )
     equilibrium_residual: float = fact("greatest unbalanced force on a block (or moment divided by the size), divided by the total load")
@@ -169,8 +171,8 @@ class Tilt(KindResults):
     tilt_angle_opposite_deg: float = fact("tilt of the ground with the same effect as the collapse acceleration towards -x", "deg")
     admissible_interval_g: list[float] = fact("accelerations between which an admissible thrust line exists", "g")
     load_direction: Literal["+x"] = fact("direction of the load (+x or -x) for which hinges and friction are given")
-    hinges: list[Hinge] = fact("hinges of the mechanism")
-    sliding_joints: list[int] = fact("joints that slide or open in the collapse mechanism")
+    hinges: list[Hinge] = fact("hinges of the collapse mechanism towards +x")
+    sliding_joints: list[int] = fact("joints that slide or open in the collapse mechanism towards +x")
     hinges_opposite: list[Hinge] = fact("hinges of the collapse mechanism towards -x")
     dilating_joints: list[int] = maybe(
         "joints in compression that slide in the collapse mechanism towards +x. The collapse acceleration is then an "
@@ -179,21 +181,25 @@ class Tilt(KindResults):
     dilating_joints_opposite: list[int] = maybe("joints in compression that slide in the collapse mechanism towards -x")
     collapse_acceleration_non_associated_g: float = maybe(
         "collapse acceleration towards +x for sliding without dilatancy: the lowest of the certified "
-        "states that were found. It is one value of an interval whose upper end is the associated value",
+        "states that were found. The possible values form an interval; its upper end is the value with dilatant (associated) friction",
         "g",
         source="Ferris and Tin-Loi 2001",
     )
-    collapse_acceleration_non_associated_opposite_g: float = maybe("the same to -x", "g")
+    collapse_acceleration_non_associated_opposite_g: float = maybe(
+        "collapse acceleration towards -x for sliding without dilatancy: the lowest of the certified states that were found", "g"
+    )
     collapse_acceleration_load_path_g: float = maybe(
-        "design value of the collapse acceleration towards +x, if joints slide: the lowest of the load "
-        "paths with elastic joints and three stiffness ratios",
+        "design value of the collapse acceleration towards +x, if joints slide: the lowest value of the load "
+        "paths with elastic joints, for three ratios of joint stiffness",
         "g",
         source="collapse acceleration with elastic-frictional joints without dilatancy (incremental return "
         "mapping); the certificate is the same as in `non_dilatant`",
     )
-    collapse_acceleration_load_path_opposite_g: float = maybe("the same to -x", "g")
+    collapse_acceleration_load_path_opposite_g: float = maybe(
+        "design value of the collapse acceleration towards -x, if joints slide: the lowest value of the load paths", "g"
+    )
     load_paths: list[LoadPath] = maybe("load paths towards +x, one for each ratio of joint stiffness")
-    load_paths_opposite: list[LoadPath] = maybe("load paths to -x")
+    load_paths_opposite: list[LoadPath] = maybe("load paths towards -x, one for each ratio of joint stiffness")
     non_associated_reason: str = maybe("reason why no collapse state without dilatancy is given besides the upper bound")
     touching_joints: list[int] = fact("joints in which the thrust line reaches an end of the joint without forming a hinge")
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires at collapse")
@@ -209,12 +215,12 @@ class Tilt(KindResults):
     ties: list[TieForce] = maybe("forces of the ties at collapse")
     ties_opposite: list[TieForce] = maybe("forces of the ties at collapse under load towards -x")
     thrust_min_N: float = maybe(
-        "minimum horizontal thrust of the first arch under vertical loads only: at its left springing "
+        "minimum horizontal thrust, under vertical loads only, of the first arch in `thrusts`: at its left springing "
         "or, for an arch with ties, at its crown",
         "N",
     )
     thrust_max_N: float = maybe(
-        "maximum horizontal thrust of the first arch under vertical loads only: at its left springing "
+        "maximum horizontal thrust, under vertical loads only, of the first arch in `thrusts`: at its left springing "
         "or, for an arch with ties, at its crown",
         "N",
     )
@@ -225,12 +231,12 @@ class Tilt(KindResults):
     rise_m: float = maybe("rise of the intrados", "m")
     base_width_m: float = maybe("width of a buttress at its base", "m")
     height_above_ground_m: float = maybe("height of the crown above the ground", "m")
-    overall_width_m: float = maybe("width over the outer buttresses", "m")
+    overall_width_m: float = maybe("overall width, including the outer buttresses", "m")
     nave_span_m: float = maybe("clear span of the nave", "m")
     left_aisle_span_m: float = maybe("clear span of the left aisle", "m")
     right_aisle_span_m: float = maybe("clear span of the right aisle", "m")
     duality_gap: float = fact("greatest difference between the lower bound (from equilibrium) and the upper bound (from a mechanism)", "g")
-    fracture: Fracture = maybe("collapse with the leeward buttress cracked")
+    fracture: Fracture = maybe("results of the collapse towards +x with the leeward buttress cracked")
     non_dilatant: NonDilatant = maybe("sliding without dilatancy, collapse towards +x: bounds and certificate")
     non_dilatant_opposite: NonDilatant = maybe("sliding without dilatancy, collapse towards -x: bounds and certificate")
 
@@ -444,7 +450,7 @@ class MovingLoad(KindResults):
         "the analysis assumes dilatant (associated) friction"
     )
     greatest_compression_N: float = fact("greatest compression across a joint at collapse, with the load at the governing position", "N")
-    places_without_limit: int = fact("positions at which a load of this kind never causes collapse")
+    places_without_limit: int = fact("number of positions at which no multiple of the load causes collapse")
     ties: list[TieForce] = maybe("forces of the ties at collapse, with the load at the governing position")
     duality_gap: float = fact(
         "greatest difference, over all positions, between the lower bound (from equilibrium) and the "
@@ -453,7 +459,9 @@ class MovingLoad(KindResults):
     load_N: float = maybe("load given in the deck", "N")
     safety_factor: float = maybe("collapse load, divided by the load given in the deck")
     train: str = maybe('name of the train. "load": one total force, divided among the axles; "train": the deck gives the load of each axle')
-    adequacy_factor: float = maybe("factor on the factored train (or load) at which the bridge collapses")
+    adequacy_factor: float = maybe(
+        "adequacy factor: multiple of the train or load (with partial and dynamic factors) at which the bridge collapses"
+    )
     live_load_factor: float = maybe(
         "live-load factor (partial factor times dynamic factor), with which the train is multiplied "
         "before the adequacy factor is calculated"
@@ -519,7 +527,7 @@ class JointOpening(ResultModel):
     name: str = fact("its name")
     opening_mm: float = fact("opening of the joint at the end that opens more", "mm")
     side: OpenSide = fact("end of the joint that opens more; for arches intrados or extrados")
-    slip_mm: float = fact("how far it slides", "mm")
+    slip_mm: float = fact("slip of the joint", "mm")
 
 
 class MovingSupports(KindResults):
@@ -532,9 +540,7 @@ class MovingSupports(KindResults):
     thrust_at_fall_N: float = maybe("horizontal thrust at collapse", "N")
     hinges_at_rest: list[JointHinge] = maybe("the three hinges at the start of the movement")
     hinges_at_fall: list[JointHinge] = maybe("the three hinges at collapse")
-    joints_touched_at_fall: list[int] = maybe(
-        "joints, besides the hinges, at one end of which the thrust line touches the edge at collapse"
-    )
+    joints_touched_at_fall: list[int] = maybe("joints without a hinge in which the thrust line reaches an end of the joint at collapse")
     stages: list[Stage] = maybe("stages of the movement: the start, and each change of hinges")
     openings: list[JointOpening] = maybe("joints that open or slide under [[initial.movements]]; the widest comes first")
     work_J: float = maybe("work of the weight during the movements of [[initial.movements]]", "J")
@@ -564,7 +570,7 @@ class MovingSupports(KindResults):
 class GoverningMechanism(ResultModel):
     """A mechanism that governs somewhere in a sweep."""
 
-    number: int = fact("its number in the figures")
+    number: int = fact("number of the mechanism in the figures")
     hinges: str = fact("sequence of the hinges from left to right, in words")
 
 
@@ -582,7 +588,7 @@ class Change(ResultModel):
         'stand; "locked": no collapse mechanism exists',
         name="to",
     )
-    collapse_acceleration_g: float | None = fact("collapse acceleration there", "g")
+    collapse_acceleration_g: float | None = fact("collapse acceleration at this value of the key", "g")
 
 
 #: Of one section among many: it has a capacity; a certificate proves that it cannot stand (capacity 0); no load of the kind
@@ -602,13 +608,13 @@ class Sweep(KindResults):
     """sweep: capacity and mechanism as one key of the deck varies."""
 
     vary: str = fact("the key that varies")
-    unit: str = fact("its unit")
-    mechanisms: list[GoverningMechanism] = fact("the mechanisms that govern somewhere")
+    unit: str = fact("unit of the key")
+    mechanisms: list[GoverningMechanism] = fact("mechanisms that govern in a part of the range of the key")
     changes: list[Change] = fact("values of the key at which another mechanism begins to govern")
-    stable_limits: list[float] = fact("least and greatest value of the key (in its unit) with which the structure stands")
-    locked_limits: list[float] = fact("values of the key beyond which a load of this kind never causes collapse")
+    stable_limits: list[float] = fact("values of the key (in its unit) at the ends of the range in which the structure stands")
+    locked_limits: list[float] = fact("values of the key at which locking (no collapse mechanism exists) begins or ends")
     optimum_value: float = fact("value of the key with the greatest capacity, in the unit of the key")
-    optimum_collapse_acceleration_g: float = fact("the greatest capacity", "g")
+    optimum_collapse_acceleration_g: float = fact("greatest collapse acceleration of all calculated values", "g")
     optimum_tilt_angle_deg: float = fact("tilt of the ground with the same effect as the greatest collapse acceleration", "deg")
     optimum_inside: bool = fact("whether the optimum lies inside the calculated range, and not at one of its ends")
     values: list[float] = fact("values of the varied key, in the unit of the key")
@@ -641,9 +647,9 @@ class Sweep(KindResults):
 class NoAnswerRow(ResultModel):
     """A section of a survey that cannot stand, or has no answer."""
 
-    row: int = fact("its line in the file")
+    row: int = fact("line of the section in the file")
     name: str = fact("its name")
-    reason: str = fact("why")
+    reason: str = fact("reason why the section cannot stand or has no result")
 
 
 class Survey(KindResults):
@@ -659,9 +665,9 @@ class Survey(KindResults):
         "number of sections in whose mechanism joints in compression slide; their capacity is an upper bound (dilatant friction)"
     )
     weakest: str | None = fact("name of the weakest section; a section that cannot stand has capacity 0")
-    weakest_collapse_acceleration_g: float | None = fact("its capacity", "g")
+    weakest_collapse_acceleration_g: float | None = fact("collapse acceleration of the weakest section", "g")
     median_collapse_acceleration_g: float | None = fact("median capacity of the sections that stand under their self-weight", "g")
-    sections_per_second: float = fact("speed of the survey", "1/s")
+    sections_per_second: float = fact("number of sections calculated per second", "1/s")
     duality_gap: float = fact("greatest difference between the bounds", "g")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -683,7 +689,7 @@ class Imperfections(KindResults):
 
     count: int = fact("number of random geometries")
     deviation_m: float = fact("greatest distance of a point of a random geometry from its position in the deck", "m")
-    given_collapse_acceleration_g: float = fact("collapse acceleration of the geometry in the deck", "g")
+    given_collapse_acceleration_g: float = fact("collapse acceleration of the geometry in the deck, without random deviations", "g")
     median_collapse_acceleration_g: float = fact("median capacity", "g")
     low_collapse_acceleration_g: float = fact("5th percentile of the capacity of the random geometries: lower end of the 90 % band", "g")
     high_collapse_acceleration_g: float = fact("95th percentile of the capacity of the random geometries: upper end of the 90 % band", "g")

@@ -18,7 +18,7 @@ class WaveletPulse(ResultModel):
 
     indicator: float = fact("pulse indicator: above 0.85 the motion is pulse-like, below 0.15 it is not", source="Baker 2007")
     period_s: float = fact("period of the pulse", "s")
-    peak_velocity_m_s: float = fact("its peak velocity", "m/s")
+    peak_velocity_m_s: float = fact("peak velocity of the pulse", "m/s")
     pgv_ratio: float = fact("peak velocity of the motion without the pulse, divided by that of the whole motion")
     energy_ratio: float = fact("energy of the motion without the pulse, divided by that of the whole motion")
     early: bool = fact("whether the pulse arrives early in the motion")
@@ -47,7 +47,7 @@ class OneMotion(KindResults):
     title: str = maybe("for a record: name of the event, from the file")
     station: str = maybe("for a record: station and component, from the file")
     pga_g: float = fact("greatest horizontal acceleration", "g")
-    pga_time_s: float = fact("when it comes", "s")
+    pga_time_s: float = fact("time of the greatest horizontal acceleration", "s")
     pgv_m_s: float = fact("greatest velocity", "m/s")
     pgd_m: float = fact("greatest displacement", "m")
     pgv_over_pga_s: float | None = fact("greatest velocity over greatest acceleration", "s")
@@ -62,7 +62,7 @@ class OneMotion(KindResults):
     velocity_period_s: float = fact("period at which the pseudo-velocity spectrum (5 % damping) has its maximum", "s")
     mean_period_s: float | None = fact("mean period of the Fourier spectrum", "s", source="Rathje et al. 1998")
     points: int = fact("number of samples")
-    time_step_s: float = fact("time between them", "s")
+    time_step_s: float = fact("time step between samples", "s")
     primary_impulse: Impulse | None = fact("the single sine that explains the greatest share of the motion", source="thesis 5.3.2")
     impulses: list[Impulse] = fact("the strongest impulses")
     wavelet_pulse: WaveletPulse = fact("the strongest velocity pulse", source="Baker 2007")
@@ -72,7 +72,7 @@ class OneMotion(KindResults):
     )
     vertical_pga_g: float = maybe("greatest vertical acceleration", "g")
     rotd50_pga_g: float | None = maybe("median, over all directions, of the peak acceleration", "g", source="Boore 2010")
-    rotd100_pga_g: float | None = maybe("greatest over all directions", "g", source="Boore 2010")
+    rotd100_pga_g: float | None = maybe("greatest peak acceleration over all directions", "g", source="Boore 2010")
     rotd_damping: float = maybe("damping ratio of the spectra for all directions")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -96,7 +96,7 @@ class MotionSet(KindResults):
     median_impulse_amplitude_g: float | None = fact("median amplitude of the primary impulses", "g")
     median_impulse_period_s: float | None = fact("median period of the primary impulses", "s")
     time_step_s: float = fact("time step of the first motion", "s")
-    mmi: float = maybe("of generated motions: their intensity")
+    mmi: float = maybe("for generated motions: macroseismic intensity")
     seed: int = maybe("for generated and compatible motions: the seed of the random numbers")
     expected_pga_g: float = maybe(
         "for generated motions: median peak acceleration observed in earthquakes of this intensity", "g", source="Worden et al. 2012"
@@ -124,9 +124,9 @@ class UseOfLimits(ResultModel):
     """How much of a shake table's limits a motion needs; 1 is all of it."""
 
     mass_kg: float = fact("moving mass", "kg")
-    stroke: float = fact("displacement over the stroke")
-    flow: float = fact("velocity over the greatest one")
-    force: float = fact("force over the greatest one")
+    stroke: float = fact("displacement of the motion, divided by the stroke of the table")
+    flow: float = fact("velocity of the motion, divided by the greatest velocity of the table")
+    force: float = fact("force that the motion requires, divided by the greatest force of the table")
     governing: Literal["stroke", "flow", "force"] = fact(
         "limit of the table that governs: the one nearest to being reached, or exceeded most"
     )
@@ -137,8 +137,12 @@ class ShakeTable(KindResults):
 
     max_velocity_m_s: float = fact("greatest velocity of the table", "m/s")
     masses_kg: list[float] = fact("moving masses, table included", "kg")
-    stroke_to_flow_Hz: float = fact("frequency above which the flow governs instead of the stroke", "Hz", source="thesis Fig. C-1")
-    flow_to_force_Hz: list[float] = fact("frequency above which the force governs instead of the flow, for each mass", "Hz")
+    stroke_to_flow_Hz: float = fact(
+        "frequency above which the limit of flow governs instead of the limit of stroke", "Hz", source="thesis Fig. C-1"
+    )
+    flow_to_force_Hz: list[float] = fact(
+        "frequency above which the limit of force governs instead of the limit of flow, for each mass", "Hz"
+    )
     fits: bool = maybe("whether the table can play the motion with each of the masses")
     low_cut_Hz: float = maybe("corner frequency of the high-pass filter of the drive", "Hz")
     peak_displacement_m: float = maybe("greatest displacement of the drive", "m")
@@ -150,8 +154,8 @@ class ShakeTable(KindResults):
     time_scale: float = maybe("factor on time with which the motion fits the table best")
     amplitude_factor: float = maybe("factor on acceleration with which the motion fits the table best")
     played_displacement_m: float = maybe("greatest displacement of the scaled motion", "m")
-    played_velocity_m_s: float = maybe("greatest velocity so scaled", "m/s")
-    played_acceleration_g: float = maybe("greatest acceleration so scaled", "g")
+    played_velocity_m_s: float = maybe("greatest velocity of the scaled motion", "m/s")
+    played_acceleration_g: float = maybe("greatest acceleration of the scaled motion", "g")
     rest_error_m: float = maybe("displacement that remains at the start and the end of the drive signal", "m")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -160,4 +164,6 @@ class ShakeTable(KindResults):
             return judge("The deck gives no motion that the table could play.")
         most = max(max(u.stroke, u.flow, u.force) for u in self.use_of_limits)
         text = "fits the table" if self.fits else "does not fit the table"
-        return judge(f"The motion {text}: it needs {most:.3g} of the governing limit.", most, 1.0, "of the limit", "not-applicable")
+        return judge(
+            f"The motion {text}: it needs {100.0 * most:.3g} % of the governing limit.", most, 1.0, "of the limit", "not-applicable"
+        )

@@ -51,16 +51,17 @@ class ThrustNetwork(KindResults):
     equilibrium_residual: float = fact("greatest unbalanced force at a node, divided by the weight")
     thickness_m: float = fact("median thickness of the blocks across the branches of the most central network", "m")
     central_outside_m: float = fact(
-        "greatest distance by which branches with a force leave the blocks between two nodes, in the most central network", "m"
+        "greatest distance by which branches with a force pass outside the blocks between two nodes, in the most central network", "m"
     )
     least_outside_m: float | None = fact(
-        "greatest distance by which branches leave the blocks, in the network of least thrust; null without this network", "m"
+        "greatest distance by which branches pass outside the blocks, in the network of least thrust; null without this network", "m"
     )
     greatest_outside_m: float | None = fact(
-        "greatest distance by which branches leave the blocks, in the network of greatest thrust; null without this network", "m"
+        "greatest distance by which branches pass outside the blocks, in the network of greatest thrust; null without this network", "m"
     )
     horizontal_outside_m: float | None = fact(
-        "greatest distance by which branches leave the blocks, in the network of the greatest horizontal load; null without this network",
+        "greatest distance by which branches pass outside the blocks, in the network of greatest horizontal load; "
+        "null without this network",
         "m",
     )
     least_friction: float | None = fact(
@@ -85,7 +86,7 @@ class ThrustNetwork(KindResults):
             violated.append(f"Sliding of the joints is not checked (coefficient of friction {self.least_friction:.3g}).")
         if self.leaves(self.central_outside_m):
             violated.append(
-                f"Between its nodes, the most central network leaves the blocks by up to {1000.0 * self.central_outside_m:.3g} mm."
+                f"Branches of the most central network pass outside the blocks by up to {1000.0 * self.central_outside_m:.3g} mm."
             )
         text = (
             f"A network on this form diagram stays within the middle {100.0 * part:.3g} % of the vertical depth. "

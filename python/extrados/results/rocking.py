@@ -30,7 +30,7 @@ class JointTime(ResultModel):
     """Where and when a condition of rocking first fails."""
 
     joint: str = fact("name of the joint; empty if the whole resting structure slides")
-    time_s: float = fact("first time", "s")
+    time_s: float = fact("first time at which the condition fails", "s")
 
 
 class Conditions(ResultModel):
@@ -65,7 +65,7 @@ class Conditions(ResultModel):
 class RuleOutcome(ResultModel):
     """What the motion does under an impact rule."""
 
-    rule: str = fact("impact rule: a value of [joints] `restitution`, or a number found with discrete elements")
+    rule: str = fact("impact rule: a value of [joints] `restitution`, or a higher coefficient of restitution that is tried in addition")
     restitution: float = fact(
         "coefficient of restitution (angular velocity after / before impact), limited to values from 0 "
         "to 1; for a mechanism, at the impact that starts rocking towards +x"
@@ -76,7 +76,7 @@ class RuleOutcome(ResultModel):
 class RestraintForces(ResultModel):
     """A tie, damper or added hinge while the structure rocks."""
 
-    name: str = fact("as the deck calls it")
+    name: str = fact("name in the deck")
     least_force_N: float = maybe("least force of a tie or damper; tension is positive", "N")
     greatest_force_N: float = maybe("greatest force of a tie or damper; tension is positive", "N")
     permanent_elongation_m: float = maybe("permanent elongation of a tie or damper at the end of the run, by yield or slip", "m")
@@ -103,8 +103,8 @@ class StackRocking(ResultModel):
     critical_rotation_upper_rad: float = fact("slenderness angle of the upper block alone", "rad")
     uplift_as_one_g: float = fact("horizontal acceleration at which both blocks begin to rock together, as one body", "g")
     uplift_upper_g: float = fact("horizontal acceleration at which the upper block begins to rock alone", "g")
-    impacts_on_ground: int = fact("impacts on the ground")
-    impacts_between: int = fact("impacts at the joint between")
+    impacts_on_ground: int = fact("number of impacts on the ground")
+    impacts_between: int = fact("number of impacts at the joint between the two blocks")
     modes: list[ModeShare] = fact("share of the rocking time spent in each mode")
 
 
@@ -118,7 +118,7 @@ class SoftBaseRocking(ResultModel):
     vertical_period_s: float = fact("natural period of the vertical vibration, without damping", "s")
     sinking_at_rest_m: float = fact("settlement of the base under self-weight, below the centre of mass", "m")
     lift_rotation_rad: float = fact("rotation at which an edge lifts off under static load", "rad")
-    capacity_g: float = fact("collapse acceleration (horizontal, constant), at which part of the base is lifted", "g")
+    capacity_g: float = fact("collapse acceleration (horizontal, constant) of the block on this base; lesser value of both directions", "g")
     peak_sinking_m: float = fact("greatest settlement; of either sign", "m")
     greatest_pressure_Pa: float = maybe("for a Winkler base: greatest pressure, at an edge", "Pa")
     greatest_edge_force_N: float = maybe("for springs at the edges: greatest force of a spring", "N")
@@ -133,7 +133,7 @@ class HandOver(ResultModel):
     """The rest of the motion on rigid contacts, from the state in which a condition of the mechanism fails."""
 
     time_s: float = fact(
-        "time at which the run with rigid contacts takes over, just before a condition is violated; it "
+        "time at which the run with rigid contacts begins, just before a condition is violated. This run "
         "starts from the positions and velocities of the blocks at this time",
         "s",
     )
@@ -149,14 +149,14 @@ class Rocking(KindResults):
     rotation_of: str = fact("body whose rotation is given")
     outcome: WholeOutcome = fact(
         "outcome: no rocking, sliding only, rocking and recovery, or collapse. If the run was continued "
-        "with rigid contacts, the outcome is theirs"
+        "with rigid contacts, this is the outcome of the continued run"
     )
     settled: bool = fact("whether the structure came to rest, or collapsed, before the run ended; if false, the outcome is open")
     collapse_half_cycle: int | None = fact("half cycle of the collapse")
     collapse_time_s: float | None = fact("time after which the structure can no longer recover", "s")
-    half_cycles: int = fact("half cycles of rocking")
+    half_cycles: int = fact("number of half cycles of rocking")
     impacts: int = fact("number of impacts")
-    impact_times_s: list[float] = fact("when they happen", "s")
+    impact_times_s: list[float] = fact("times of the impacts", "s")
     peak_rotation_rad: float = fact("greatest rotation, positive to +x", "rad")
     peak_rotation_ratio: float = fact("greatest rotation, divided by the critical rotation (beyond it, gravity causes collapse)")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
@@ -167,9 +167,11 @@ class Rocking(KindResults):
     rebound: float = maybe(
         "rocking against a wall: ratio of angular velocity after / before the rebound, from the deck or from three impacts"
     )
-    energy_residual_ratio: float = fact("greatest error of the energy balance, divided by the energy in motion")
-    steps: int = fact("steps of the integrator")
-    rejected_steps: int = fact("rejected steps")
+    energy_residual_ratio: float = fact(
+        "greatest error of the energy balance, divided by the greatest mechanical energy, or by the work of the ground if this is greater"
+    )
+    steps: int = fact("number of time steps of the integrator")
+    rejected_steps: int = fact("number of rejected time steps")
     restitution: float | None = fact(
         "coefficient of restitution: angular velocity after / before an impact; for blocks and mechanisms, the impact "
         "that starts rocking towards +x; null on a compliant base"
@@ -192,7 +194,7 @@ class Rocking(KindResults):
     restitution_inelastic: float = maybe("for an arch: coefficient of restitution by a plastic impact at all joints", source="Moreau 1988")
     outcomes_by_rule: list[RuleOutcome] = maybe(
         "outcome by each impact rule, given if the coefficients of restitution c_v of the rules differ by a factor of more than 1.3. If "
-        "a plastic impact is unsafe, an outcome with the energy that discrete elements keep is added"
+        "plastic impacts may lose too much energy, the outcome with a higher c_v is added"
     )
     decided_by_last_digits: bool = fact(
         "whether the response is chaotic: a perturbation of the motion by 1e-6 grows by a factor of more "
@@ -208,7 +210,7 @@ class Rocking(KindResults):
         "calculated with rigid contacts. All other results of the mechanism end at `hand_over.time_s`"
     )
     violated: list[str] = fact("other violated assumptions, one sentence each (chaotic response, impact rules)")
-    stack: StackRocking = maybe("of two stacked blocks")
+    stack: StackRocking = maybe("results of two stacked blocks")
     soft_base: SoftBaseRocking = maybe("results of a compliant base ([supports] stiffness)")
     thrust_line_residual_m: float = maybe(
         "for an arch: greatest distance between the thrust line and the last hinge, through which it should pass", "m"
@@ -259,7 +261,7 @@ class AtAmplitudes(ResultModel):
 class RuleCurve(ResultModel):
     """The failure curve by an impact rule."""
 
-    rule: str = fact("word of [joints] restitution")
+    rule: str = fact("impact rule: a value of [joints] `restitution`")
     restitution: float = fact(
         "coefficient of restitution (angular velocity after / before impact), limited to values from 0 "
         "to 1; for a mechanism, at the impact that starts rocking towards +x"
@@ -283,7 +285,7 @@ class FailureDomain(KindResults):
     conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all pulses of the map")
     handed_over: int = maybe(
         "number of pulses of the map that were continued with rigid contacts, because joints slide or hinges form outside the rocking "
-        "mechanism; there, the failure curve is accurate to one cell of the map"
+        "mechanism. At these pulses, the failure curve is accurate to one cell of the map"
     )
     amplitudes_by_rule: list[RuleCurve] = maybe(
         "failure curve by each impact rule, given if the coefficients of restitution c_v of the rules differ by a factor of more than 1.3"
@@ -319,11 +321,14 @@ class FailureDomain(KindResults):
         slides = least_beside(places, self.sliding_from_g, duration)
         decided = self.handed_over is not None and not self.conditions.violated  # rigid contacts decided all of these
         if slides is not None and amplitude >= slides and not decided:
-            found.append(f"At this duration, blocks slide from an amplitude of {slides:.3g} g upwards. Use dem, or check the friction.")
+            found.append(
+                f"For pulses of {duration:.3g} s, blocks slide from an amplitude of {slides:.3g} g upwards. Use dem, or check the friction."
+            )
         elsewhere = least_beside(places, self.hinges_elsewhere_from_g, duration)
         if elsewhere is not None and amplitude >= elsewhere and not decided:
             found.append(
-                f"At this duration, hinges form outside the rocking mechanism from an amplitude of {elsewhere:.3g} g upwards. Use dem."
+                f"For pulses of {duration:.3g} s, hinges form outside the rocking mechanism from an amplitude of "
+                f"{elsewhere:.3g} g upwards. Use dem."
             )
         curves = [(one.rule, between(places, one.amplitudes_g, duration)) for one in self.amplitudes_by_rule or []]
         fails = {rule: capacity is not None and amplitude >= capacity for rule, capacity in curves}
@@ -363,8 +368,8 @@ class MotionImpulse(ResultModel):
 
     name: str = fact("the motion")
     amplitude_g: float = fact("amplitude of the sine, with its sign", "g")
-    period_s: float = fact("its period", "s")
-    start_s: float = fact("when it starts", "s")
+    period_s: float = fact("period of the sine", "s")
+    start_s: float = fact("time at which the sine starts", "s")
     goodness_of_fit: float = fact(
         "goodness of fit: share of the integral of the squared acceleration, over the duration of the sine, that the sine explains"
     )
@@ -395,10 +400,11 @@ class FailureCurve(ResultModel):
     natural_time_s: float = fact("time by which the durations are scaled: sqrt(R/g) for an arch, 1/p for a block", "s")
     cycles: int = fact("number of cycles of a train of sines; 1 for all other pulses")
     static_verdicts: list[Literal["stands", "fails"]] = fact(
-        "for each motion: its peak acceleration, compared with the uplift acceleration"
+        "for each motion: verdict of the peak acceleration, compared with the uplift acceleration"
     )
     curve_verdicts: list[Literal["stands", "fails"] | None] = fact(
-        "for each motion: its primary impulse, compared with the failure curve; null if the period of the impulse is outside the curve"
+        "for each motion: verdict of the primary impulse, compared with the failure curve; "
+        "null if the period of the impulse is outside the curve"
     )
     run_outcomes: list[RockingOutcome | None] = fact("for each motion: outcome of the whole motion; null without a result")
     sliding_from_g: list[float | None] = fact(
@@ -409,7 +415,9 @@ class FailureCurve(ResultModel):
         "mechanism, at each duration; null if this occurs at none",
         "g",
     )
-    conditions: Conditions = fact("number of points of the curve below which blocks slide, or hinges form outside the rocking mechanism")
+    conditions: Conditions = fact(
+        "number of durations at which blocks slide, or hinges form outside the rocking mechanism, at an amplitude up to the failure curve"
+    )
     amplitudes_by_rule: list[RuleCurve] = maybe(
         "failure curve by each impact rule, given if the coefficients of restitution c_v of the rules differ by a factor of more than 1.3"
     )
@@ -430,7 +438,7 @@ class FailureCurves(KindResults):
     curves: list[FailureCurve] = fact("failure curves, one for each variant and number of cycles")
     impulses: list[MotionImpulse] = fact("primary impulses of the motions in the deck; empty without a motion")
     agreement: float | None = fact(
-        "share of the verdicts by the curves that agree with the run under the whole motion; null without a comparison"
+        "share of the verdicts of the curves that agree with the outcome of the run under the whole motion; null without a comparison"
     )
     scaling_misfit: float | None = fact(
         "greatest relative difference of amplitude between two curves, with durations divided by the natural time and amplitudes by the "
@@ -443,7 +451,7 @@ class FailureCurves(KindResults):
         lowest = [(min(failing), c.label) for c in self.curves if (failing := [a for a in c.amplitudes_g if a is not None])]
         if not lowest:
             every = [f"{c.label}: {text}" for c in self.curves for text in c.conditions.violated]
-            return judge("None of the calculated pulses causes collapse of a variant.", None, None, "g", violated=every)
+            return judge("None of the calculated pulses causes collapse of any variant.", None, None, "g", violated=every)
         least, label = min(lowest)
         violated = next(c.conditions.violated for c in self.curves if c.label == label)
         return judge(
@@ -469,7 +477,7 @@ class PrimaryImpulse(ResultModel):
 
     amplitude_g: float = fact("amplitude, with its sign", "g")
     period_s: float = fact("period", "s")
-    start_s: float = fact("when it starts", "s")
+    start_s: float = fact("time at which the sine starts", "s")
     goodness_of_fit: float = fact(
         "goodness of fit: share of the integral of the squared acceleration, over the duration of the sine, that the sine explains"
     )
@@ -487,7 +495,7 @@ class AssessedImpulse(PrimaryImpulse):
     margin: float | None = fact(
         "safety factor: failure amplitude divided by the amplitude of the impulse; null if the period is too short to cause collapse"
     )
-    verdict: Literal["stands", "fails"] = fact("whether the impulse causes collapse according to the failure curve")
+    verdict: Literal["stands", "fails"] = fact("verdict of the failure curve on the impulse: stands, or fails (collapse)")
 
 
 class Assessment(KindResults):
@@ -501,7 +509,7 @@ class Assessment(KindResults):
     coefficients_of_this_arch: Coefficients = fact("coefficients of the failure curve fitted to this structure")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     impulses: list[AssessedImpulse] = fact("strongest impulses of the motion, each compared with the failure curve")
-    verdict: Literal["stands", "fails"] = fact("whether an impulse of the motion causes collapse according to the failure curve")
+    verdict: Literal["stands", "fails"] = fact("verdict of the failure curve on the impulses of the motion: stands, or fails (collapse)")
     run_outcome: RockingOutcome | None = fact("outcome under the whole motion, from the equation of motion")
     margin: float | None = fact(
         "lowest safety factor of all impulses (failure amplitude divided by amplitude); null if no impulse can cause collapse"

@@ -14,8 +14,8 @@ class WallShare(ResultModel):
 
     wall: str = fact("its name")
     shear_N: float = fact("in-plane shear force of the wall, along the load", "N")
-    share: float = fact("part of the base shear")
-    normal_N: float = fact("compression is negative", "N")
+    share: float = fact("share of the base shear that the wall carries at the greatest load")
+    normal_N: float = fact("normal force of the wall; compression is negative", "N")
     normal_change_N: float = fact("change of the normal force from that under the constant loads; uplift is positive", "N")
     elastic_share: float = fact("share of the base shear that the wall carries before cracking")
     drifts: list[float | None] = fact("drift of each storey; null for a storey that the wall does not have")
@@ -24,12 +24,12 @@ class WallShare(ResultModel):
 class FirstCrack(ResultModel):
     """Where the building cracks first."""
 
-    wall: str = fact("the wall")
-    storey: int = fact("the storey, from 1")
+    wall: str = fact("wall with the first crack")
+    storey: int = fact("storey with the first crack, counted from 1")
     along_m: float = maybe("distance along the wall from its start; not given for a vault", "m")
     height_m: float = fact("height above the ground, or above the lowest springing", "m")
     place_m: list[float] = fact("coordinates x, y, z of the point", "m")
-    base_shear_N: float = fact("under this base shear", "N")
+    base_shear_N: float = fact("base shear at the first crack", "N")
 
 
 class JointMotion(ResultModel):
@@ -48,11 +48,11 @@ class JointMotion(ResultModel):
 class SeatMotion(ResultModel):
     """How far a floor has moved off a wall on which it rests by friction."""
 
-    floor: str = fact("floor, as its number in the deck and its storey")
+    floor: str = fact("floor: its number in the deck and its storey")
     wall: str = fact("wall on which the floor rests")
     normal_N: float = fact("load of the floor on its support on the wall, under the constant loads; compression is positive", "N")
-    friction_N: float = fact("friction times this load", "N")
-    length_m: float = fact("length of the seat", "m")
+    friction_N: float = fact("friction resistance of the support under the constant loads: coefficient of friction times load", "N")
+    length_m: float = fact("length of the support of the floor on the wall", "m")
     slip_m: float = fact("greatest displacement of an end of the floor away from its support on the wall", "m")
     slip_along_m: float = fact("greatest displacement of an end of the floor along its support on the wall", "m")
     slid_off: bool = fact("whether an end of the floor has moved by more than the length of its support")
@@ -70,15 +70,17 @@ class FootForce(ResultModel):
 
     foot: str = fact("its name")
     thrust_N: float = fact("outward thrust at the foot; for a dome, the sum around its circumference", "N")
-    vertical_N: float = fact("downward", "N")
+    vertical_N: float = fact("vertical force of the foot on the ground, positive downwards", "N")
 
 
 class Flanges(ResultModel):
     """Walls across the push, at the peak."""
 
     share: float = fact("share of the base shear that the walls parallel to the load do not carry in-plane")
-    uplift_N: float = fact("vertical force at the feet of the walls perpendicular to the load: tension, and loss of compression", "N")
-    pressure_N: float = fact("compression added to them", "N")
+    uplift_N: float = fact(
+        "decrease of the compression at the feet of the walls perpendicular to the load, caused by the load (tension included)", "N"
+    )
+    pressure_N: float = fact("increase of the compression at the feet of the walls perpendicular to the load, caused by the load", "N")
     working: bool = fact("whether the walls perpendicular to the load carry an upward or downward force of more than 1/20 of the weight")
 
 
@@ -88,7 +90,7 @@ class SlidingLevel(ResultModel):
     level: str = fact("its name")
     height_m: float = fact("its height", "m")
     normal_N: float = fact("normal force on the level under the constant loads; compression is positive", "N")
-    area_m2: float = fact("area of its walls", "m^2")
+    area_m2: float = fact("area of the walls at the level", "m^2")
     resistance_N: float = fact("sliding resistance: friction times normal force, plus cohesion times area", "N")
     shear_share: float = fact("share of the base shear that acts above the level")
     base_shear_N: float = fact("base shear at which the level slides", "N")
@@ -98,14 +100,14 @@ class PushCurve(SlaCurve):
     """The events of one sense of the push; loads are base shears."""
 
     capacity_N: float | None = fact(
-        "greatest base shear, or the sliding limit if this is lower; null without an equilibrium state, or under a ground motion", "N"
+        "greatest base shear, or the sliding limit if this is lower; null without an equilibrium state, or if the stage moves supports", "N"
     )
     sliding_capacity_N: float = maybe("lowest base shear at which a level slides by Coulomb's law", "N")
     sliding_level: str = maybe("the level that slides first")
     sliding: list[SlidingLevel] = maybe("sliding limits of all levels; not given without walls, or if sliding is excluded")
-    base_shear_coefficient: float | None = fact("capacity over the weight")
+    base_shear_coefficient: float | None = fact("capacity divided by the weight")
     roof_drift: float | None = fact("roof drift: control displacement at the greatest load, divided by the height")
-    storey_drifts: list[float | None] = fact("drift of each storey there")
+    storey_drifts: list[float | None] = fact("drift of each storey at the greatest load")
     walls: list[WallShare] = fact("base shear of each wall at the greatest load")
     flanges: Flanges = maybe("contribution of the transverse walls (flanges) to the base shear")
     first_crack: FirstCrack = maybe("location of the first crack; not given if nothing cracks")
@@ -113,7 +115,7 @@ class PushCurve(SlaCurve):
     seats: list[SeatMotion] = maybe("load and slip of the floors on their supports; not given without such supports")
     feet: list[FootForce] = maybe("for a vault or dome: forces of its feet on the ground")
     cracked_points_by_storey: list[int] = fact(
-        "number of integration points in the planes of the walls that are cracked at the greatest load, by storey"
+        "number of cracked integration points (in the planes of the walls) at the greatest load, by storey"
     )
 
 
@@ -122,20 +124,20 @@ class StageOfPush(PushCurve):
     gives way they are the forces that move it."""
 
     name: str = fact("its name, or its number")
-    of: Literal["push", "settlement"] = fact("quantity")
+    of: Literal["push", "settlement"] = fact("kind of stage: push or settlement")
     prefix: str = fact("prefix of the array names of this stage; empty for the stage that gives the results of the analysis")
-    start_load_N: float = fact("load at its start", "N")
-    end_load_N: float | None = fact("load at its end", "N")
+    start_load_N: float = fact("load at the start of the stage", "N")
+    end_load_N: float | None = fact("load at the end of the stage", "N")
 
 
 class FrameCapacity(ResultModel):
     """What the piers of the weakest storey bear by the formulas of a code."""
 
-    code: str = fact("code; if it has several formulas, the least strength counts for a pier")
+    code: str = fact("name of the code; if its formulas for a pier differ, the least strength counts")
     base_shear_N: float = fact(
         "base shear at which the shear force in the weakest storey equals the sum of the strengths of its piers", "N"
     )
-    storey: int = fact("the weakest storey, from 1")
+    storey: int = fact("number of the weakest storey, counted from 1")
 
 
 class Variation(ResultModel):
@@ -144,7 +146,7 @@ class Variation(ResultModel):
     name: str = fact("its name")
     factors: dict[str, float] = fact("by the deck")
     greatest_base_shear_N: float | None = fact("greatest base shear in equilibrium", "N")
-    passed: bool = fact("whether that was a peak")
+    passed: bool = fact("whether the greatest base shear is a peak, after which the base shear decreases")
     base_shear_coefficient: float | None = fact("base shear, divided by the weight of this variant")
 
 
@@ -153,10 +155,10 @@ class Pushover(PushCurve, KindResults):
 
     weight_N: float = fact("weight of walls and floors", "N")
     reference_load_N: float = fact("base shear at load multiplier 1", "N")
-    pattern: str = fact("of the horizontal forces")
+    pattern: str = fact("distribution of the horizontal forces")
     direction_deg: float = fact("direction of the load in plan", "deg")
     frequency_Hz: float = maybe("frequency of the mode that gives the distribution of the load", "Hz")
-    modal_mass_ratio: float = maybe("participating mass ratio of this mode")
+    modal_mass_ratio: float = maybe("participating mass ratio of the mode that gives the distribution of the load")
     cracking: str = fact("how cracked material behaved")
     layers: int = fact("number of integration points through the thickness of the walls")
     nodes: int = fact("nodes of the mesh")

@@ -18,12 +18,13 @@ class Bilinear(ResultModel):
 
     stiffness_N_m: float = fact("secant stiffness at 60 % of the peak load", "N/m")
     yield_load_N: float = fact("load of the plateau", "N")
-    yield_displacement_m: float = fact("displacement at its start", "m")
+    yield_displacement_m: float = fact("displacement at the start of the plateau", "m")
     ultimate_displacement_m: float = fact(
-        "ultimate displacement: displacement at which the load has decreased to 80 % of the peak, or the last displacement if it has not",
+        "ultimate displacement: displacement at which the load has decreased to 80 % of the peak, "
+        "or the last displacement if the load has not decreased so far",
         "m",
     )
-    ductility: float = fact("ultimate over yield displacement")
+    ductility: float = fact("ductility: ultimate displacement divided by yield displacement")
 
 
 class Makeup(ResultModel):
@@ -68,26 +69,28 @@ class SlaCurve(ResultModel):
     greatest_load_displacement_m: float | None = fact("control displacement at the greatest load", "m")
     greatest_load_event: int | None = fact("number of the event at the greatest load, counted from 1")
     first_event_load_N: float | None = fact("load of the first event", "N")
-    events: int = fact("events of this run")
+    events: int = fact("number of events of this run")
     events_before_resume: int = fact("number of events in the earlier runs that this run continues")
-    events_without_equilibrium: int = fact("number of events for which no load multiplier is admissible at all integration points")
+    events_without_equilibrium: int = fact(
+        "number of events for which no load multiplier satisfies the strengths at every integration point"
+    )
     events_out_of_reach: int = fact(
         "number of events that are not valid states: a displacement exceeds 1/10 of the size of the "
         "structure, or a load exceeds ten times the peak load"
     )
     first_event_without_equilibrium: int | None = fact("number of the first event without equilibrium, counted from 1")
     stop: str = fact("why the run ended")
-    secondary_cracks: int = fact("events of second cracks")
-    damaged_points: int = fact("points that cracked")
-    closings: int = fact("cracks that closed")
-    crushing_events: int = fact("events of crushing")
+    secondary_cracks: int = fact("number of events with a second crack at a point")
+    damaged_points: int = fact("number of integration points that cracked")
+    closings: int = fact("number of events in which a crack closed")
+    crushing_events: int = fact("number of crushing events")
     last_load_N: float | None = fact("load of the last event that is in equilibrium", "N")
-    last_displacement_m: float | None = fact("control displacement of that event", "m")
+    last_displacement_m: float | None = fact("control displacement of the last event that is in equilibrium", "m")
     energy_residual_ratio: float = fact("error of the energy balance, divided by the work of the loads")
     external_work_J: float | None = fact(
-        "work of all loads up to the last event in equilibrium, if displacements change linearly between events", "J"
+        "work of all loads up to the last event in equilibrium, calculated with linear changes of displacement between events", "J"
     )
-    stored_energy_J: float | None = fact("elastic energy at that event", "J")
+    stored_energy_J: float | None = fact("elastic energy at the last event in equilibrium", "J")
     dissipated_energy_J: float | None = fact(
         "dissipated energy (with friction) up to the last event in equilibrium; it never decreases. It is the work of the loads minus "
         "the stored energy, summed from one equilibrium state to the next. Events without equilibrium count with the area of their teeth",
@@ -132,11 +135,11 @@ class SlaCurve(ResultModel):
     drop_displacement_m: float | None = maybe(
         "control displacement at which the envelope of the load has decreased to 80 % of the peak; null if not reached", "m"
     )
-    drop_drift: float | None = maybe("drift there")
+    drop_drift: float | None = maybe("drift at `drop_displacement_m`")
     axial_loss_displacement_m: float | None = maybe(
         "last control displacement at which the constant loads are still carried; null if they are carried to the end", "m"
     )
-    axial_loss_drift: float | None = maybe("drift there")
+    axial_loss_drift: float | None = maybe("drift at `axial_loss_displacement_m`")
     seconds_per_event: float = fact("computing time of an event", "s")
     events_of_constant_loads: int = fact("number of events during the application of the constant loads")
     probe_loads_N: list[float | None] = maybe(
@@ -158,19 +161,19 @@ class SlaStage(SlaCurve):
 
     name: str = fact("its name, or its number")
     prefix: str = fact("prefix of the array names of this stage; empty for the stage that gives the results of the analysis")
-    start_load_N: float = fact("load at its start", "N")
-    end_load_N: float | None = fact("load at its end", "N")
+    start_load_N: float = fact("load at the start of the stage", "N")
+    end_load_N: float | None = fact("load at the end of the stage", "N")
 
 
 class Scatter(ResultModel):
     """Repetitions with other seeds of mesh and strength."""
 
     seeds: list[int] = fact("the seeds")
-    peak_loads_N: list[float] = fact("peak load of each", "N")
-    mean_N: float = fact("their mean", "N")
-    coefficient_of_variation: float | None = fact("coefficient of variation of the measured values; null for a single value")
-    lowest_N: float = fact("the lowest", "N")
-    highest_N: float = fact("the highest", "N")
+    peak_loads_N: list[float] = fact("peak load with each seed", "N")
+    mean_N: float = fact("mean of the peak loads", "N")
+    coefficient_of_variation: float | None = fact("coefficient of variation of the peak loads; null for a single seed")
+    lowest_N: float = fact("lowest peak load", "N")
+    highest_N: float = fact("highest peak load", "N")
 
 
 class Comparison(ResultModel):
@@ -184,7 +187,9 @@ class Comparison(ResultModel):
     inside_ratio: float | None = fact(
         "share of the measured points at which the calculated envelope lies between the least and the greatest measured load"
     )
-    half_band_ratio: float = fact("mean half width of the measured band, divided by the mean measured load")
+    half_band_ratio: float = fact(
+        "mean half of the distance between the least and the greatest measured load, divided by the mean measured load"
+    )
 
 
 class Sla(SlaCurve, KindResults):
@@ -211,7 +216,10 @@ class Sla(SlaCurve, KindResults):
     stones: bool = fact(
         "whether the model consists of blocks with joints; the greatest load, as an acceleration, is then a static limit load"
     )
-    hinges: list[str] = maybe("for blocks: joints that are open, except at an edge, at the peak load")
+    hinges: list[str] = maybe(
+        "for blocks: hinges at the peak load (joints that are open on more than 90 % of their length, by "
+        "more than 1/10 of the greatest opening)"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser peak of the two senses: an acceleration [g], or a load [N] that the deck does not ask for."""
@@ -242,4 +250,4 @@ class Sla(SlaCurve, KindResults):
             )
         if reached is not None:
             return judge_acceleration(abs(reached), demand)
-        return judge(f"The capacity of the building is {load}, expressed as the load that is increased.", None, least.greatest_load_N, "N")
+        return judge(f"The peak of the increasing load is {load}. This is the capacity of the building.", None, least.greatest_load_N, "N")

@@ -13,22 +13,22 @@ class OpenContact(ResultModel):
     """A contact that opens or slides in a mechanism."""
 
     joint: int = fact("number of the contact")
-    name: str = fact("its name")
+    name: str = fact("name of the contact")
     opening: float = fact(
         "opening rate at the fastest corner of the contact, divided by the velocity of the fastest point of the mechanism"
     )
     sliding: float = fact(
         "sliding rate at the fastest corner of the contact, divided by the velocity of the fastest point of the mechanism"
     )
-    x_m: float = fact("x of its middle", "m")
-    y_m: float = fact("y of its middle", "m")
-    z_m: float = fact("z of its middle, upward", "m")
+    x_m: float = fact("x of the middle of the contact", "m")
+    y_m: float = fact("y of the middle of the contact", "m")
+    z_m: float = fact("z of the middle of the contact (upwards)", "m")
 
 
 class Pyramids(ResultModel):
     """Bounds by friction pyramids, from a linear programme."""
 
-    sides: int = fact("sides of the pyramids")
+    sides: int = fact("number of sides of the pyramids")
     lower_g: float | None = fact(
         "lower bound of the collapse acceleration, with pyramids inscribed in the friction cones; null if the structure then cannot stand",
         "g",
@@ -46,7 +46,7 @@ class BlockSize(ResultModel):
     blocks: int | None = fact("number of blocks after this change; null if the change is not possible")
     collapse_acceleration_g: float | None = fact("upper bound of the collapse acceleration along the direction; null without a result", "g")
     relative_change: float | None = fact("relative difference of this upper bound from the upper bound with the blocks of the deck")
-    reason: str | None = fact("why there is no value")
+    reason: str | None = fact("reason why there is no value")
 
 
 class SolidNonDilatant(ResultModel):
@@ -64,7 +64,9 @@ class SolidNonDilatant(ResultModel):
     least_g: float | None = fact(
         "lowest collapse acceleration of a certified state, from any initial state of stress (serves as a warning); null without one", "g"
     )
-    starts_g: list[float] = fact("collapse acceleration of the certified state found from each starting point; the lowest is used", "g")
+    starts_g: list[float] = fact(
+        "collapse acceleration of the certified state found from each starting point of the search; the lowest is used", "g"
+    )
     spread_g: float | None = fact("difference between the highest and the lowest collapse acceleration in `starts_g`", "g")
     zero_gap_g: float | None = fact(
         "for the lowest state found: collapse acceleration minus (work of friction minus work of the weight), per unit of work of the load",
@@ -91,9 +93,9 @@ class SolidTilt(KindResults):
     load_direction_deg: float = fact("direction of the load in plan, as an angle from +x towards +y", "deg")
     least_acceleration_g: float = fact("lowest collapse acceleration of all directions that were searched", "g")
     least_direction_deg: float = fact("direction of the load with the lowest collapse acceleration", "deg")
-    blocks: int = fact("stones")
-    contacts: int = fact("polygons along which they touch")
-    moving_blocks: int = fact("blocks that move in the mechanism, at more than 1/1000 of the speed of the fastest block")
+    blocks: int = fact("number of blocks")
+    contacts: int = fact("number of contacts (polygons along which blocks touch)")
+    moving_blocks: int = fact("number of blocks that move in the mechanism, at more than 1/1000 of the speed of the fastest block")
     fastest_block: str = fact("block whose centroid moves fastest")
     opening_contacts: list[OpenContact] = fact("contacts that open or slide; the 20 fastest are listed")
     weight_N: float = fact("weight of the structure and of the weights placed on it", "N")
@@ -105,8 +107,8 @@ class SolidTilt(KindResults):
     )
     overlap_residual: float = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest contact")
     dilating_contacts: int = fact(
-        "contacts in compression that slide in the three mechanisms (along the load direction, opposite, "
-        "lowest capacity). If there are any, the capacity is an upper bound (dilatant friction)"
+        "greatest number of contacts in compression that slide in one of the three mechanisms (along the load direction, "
+        "opposite, lowest capacity). If it is not zero, the capacity is an upper bound (dilatant friction)"
     )
     collapse_acceleration_load_path_g: float = maybe(
         "design value of the collapse acceleration along the load direction, if contacts slide: the "
@@ -140,7 +142,7 @@ class SolidTilt(KindResults):
     )
     face_law_reason: str = maybe("reason why the face law gives no value")
     ties: list[TieForce] = maybe("forces of ties, chains and hoops at the collapse acceleration; for bonded ones, of each segment")
-    crushing_contacts: int = maybe("contacts that crush in the mechanism; null without a compressive strength")
+    crushing_contacts: int = maybe("number of contacts that crush in the mechanism; only given with a compressive strength")
     collapse_acceleration_dry_g: float = maybe(
         'collapse acceleration along the load direction without mortar, given if `mortar` = "ductile"; 0 if the blocks then cannot stand',
         "g",
@@ -171,7 +173,7 @@ class SolidTilt(KindResults):
 class SectionThrust(ResultModel):
     """Horizontal thrust of a section of blocks in space: the sum over its contacts."""
 
-    name: str = fact("its name")
+    name: str = fact("name of the section")
     direction: str = fact("direction of the thrust at each contact: a direction in plan, or outward from the middle of the structure")
     contacts: int = fact("contacts of the section")
     least_N: float | None = fact("minimum thrust, summed over the contacts; null if the thrust has no minimum", "N")
@@ -192,11 +194,13 @@ class SolidThrust(KindResults):
         "geometric safety factor: 1 divided by the least central part of the contacts in which an equilibrium state exists; null if "
         "this part is below 1 % (no horizontal demand), or if it was not found"
     )
-    least_part_of_joints: float | None = fact("central part of the contacts that the most central state needs")
+    least_part_of_joints: float | None = fact(
+        "least central part of the contacts in which an equilibrium state exists (the most central state)"
+    )
     required_friction: float | None = fact("greatest coefficient of friction that the most central state needs")
-    required_friction_contact: str | None = fact("contact with this greatest requirement")
-    blocks: int = fact("stones")
-    contacts: int = fact("polygons along which they touch")
+    required_friction_contact: str | None = fact("contact with the greatest required friction")
+    blocks: int = fact("number of blocks")
+    contacts: int = fact("number of contacts (polygons along which blocks touch)")
     weight_N: float = fact("weight of the structure and of the weights placed on it", "N")
     dilating: bool = fact(
         "whether contacts slide in the mechanisms at the ends of `admissible_interval_g`. These ends are then upper bounds (dilatant "
@@ -219,7 +223,9 @@ class SolidThrust(KindResults):
                 f"At {self.gamma_g:g} g, the resultants of an equilibrium state pass through the middle 1 % of all contacts.", 0.0, 1.0
             )
         return judge(
-            f"At {self.gamma_g:g} g, an equilibrium state stays within the middle {100.0 * part:.3g} % of the contacts.", part, 1.0
+            f"At {self.gamma_g:g} g, the resultants of an equilibrium state stay within the middle {100.0 * part:.3g} % of the contacts.",
+            part,
+            1.0,
         )
 
 

@@ -18,7 +18,7 @@ class Sensitivity(ResultModel):
         "first-order Sobol index of the outcome (collapse 1, otherwise 0); null if all runs have the same outcome"
     )
     collapse_first_interval: list[float | None] = fact("its bootstrap interval")
-    collapse_total: float | None = fact("total index of the collapse")
+    collapse_total: float | None = fact("total Sobol index of the outcome (collapse 1, otherwise 0)")
     collapse_total_interval: list[float | None] = fact("its bootstrap interval")
 
 
@@ -34,12 +34,12 @@ class Annual(KindResults):
     annual_collapse_rate_left_out: float = maybe(
         "part of the collapse rate that intensities beyond the ends of the hazard curve may add", "1/year"
     )
-    collapse_return_period_years: float | None = maybe("its inverse", "year")
+    collapse_return_period_years: float | None = maybe("return period of collapse: 1 divided by the annual collapse rate", "year")
     years: float = maybe("number of years to which `collapse_probability_in_years` refers", "year")
     collapse_probability_in_years: float = maybe("probability of collapse within `years`, if earthquakes are independent events")
-    collapse_probability_in_years_interval: list[float | None] = maybe("its interval")
+    collapse_probability_in_years_interval: list[float | None] = maybe("confidence interval of `collapse_probability_in_years`")
     decisive_intensity: float = maybe("intensity at which the contribution to the collapse rate is greatest, in `intensity_unit`")
-    acceptable_annual_rate: float | None = maybe("rate that the deck accepts", "1/year")
+    acceptable_annual_rate: float | None = maybe("annual collapse rate that the deck accepts", "1/year")
 
     def judged_by_rate(self, violated: list[str]) -> Verdict | None:
         """The annual rate against the accepted one; open where the interval holds both. None without a hazard."""
@@ -85,14 +85,18 @@ class MeasureDispersion(ResultModel):
 class Ensemble(Annual):
     """fragility: one structure under many motions, each as it is."""
 
-    count: int = fact("runs with a result")
-    failed: int = fact("runs without one")
-    collapsed: int = fact("runs that collapse")
+    count: int = fact("number of runs with a result")
+    failed: int = fact("number of runs without a result")
+    collapsed: int = fact("number of runs that collapse")
     collapse_probability: float | None = fact("collapse probability: share of the runs that collapse")
-    confidence_interval: list[float] = fact("its score interval", source="Wilson 1927")
-    uplifted: int = fact("runs that rock")
+    confidence_interval: list[float] = fact(
+        "confidence interval (Wilson score, level `confidence`) of `collapse_probability`", source="Wilson 1927"
+    )
+    uplifted: int = fact("number of runs in which rocking starts")
     uplift_probability: float | None = fact("share of the runs in which rocking starts")
-    uplift_confidence_interval: list[float] = fact("its score interval", source="Wilson 1927")
+    uplift_confidence_interval: list[float] = fact(
+        "confidence interval (Wilson score, level `confidence`) of `uplift_probability`", source="Wilson 1927"
+    )
     mean_peak_rotation_ratio: float | None = fact(
         "mean of the peak rotation divided by the critical rotation; a run that collapses counts as 1"
     )
@@ -126,7 +130,7 @@ class Ensemble(Annual):
     sensitivity: dict[str, Sensitivity] = maybe(
         "Sobol indices of each uncertain value; `motion` is the random choice of the motion", source="Saltelli and others 2010"
     )
-    sensitivity_runs: int = maybe("number of runs added for these indices; they are not included in `count`")
+    sensitivity_runs: int = maybe("number of additional runs for the Sobol indices; they are not included in `count`")
     intensity: str = maybe("for a cloud analysis: intensity measure of the fragility curves; medians are in its unit")
     intensity_unit: str = maybe("unit of the intensities and of the medians")
     median: float | None = maybe(
@@ -160,7 +164,7 @@ class Ensemble(Annual):
 class RuleShares(ResultModel):
     """Probabilities of collapse by an impact rule."""
 
-    rule: str = fact("word of [joints] restitution")
+    rule: str = fact("impact rule: a value of [joints] `restitution`")
     restitution: float = fact(
         "coefficient of restitution (angular velocity after / before impact), limited to values from 0 "
         "to 1; for a mechanism, at the impact that starts rocking towards +x"
@@ -177,16 +181,16 @@ class LevelShares(Annual):
     motions: int = fact("number of motions")
     sliding_share: list[float | None] = fact("share of the motions in which blocks slide, at each level of intensity")
     count: list[int] = fact("number of motions with a result, at each level of intensity")
-    failed: int = fact("runs without a result")
+    failed: int = fact("number of runs without a result")
     collapsed: list[int] = fact("number of motions that cause collapse, at each level of intensity")
     collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each level of intensity")
     confidence_interval: list[list[float]] = fact(
-        "95 % confidence intervals (Wilson score) of the probability of collapse", source="Wilson 1927"
+        "confidence intervals (Wilson score, level `confidence`) of the probability of collapse", source="Wilson 1927"
     )
     uplifted: list[int] = fact("number of motions under which rocking starts, at each level of intensity")
     uplift_probability: list[float | None] = fact("share of the motions under which rocking starts, at each level of intensity")
     uplift_confidence_interval: list[list[float]] = fact(
-        "95 % confidence intervals (Wilson score) of the share of motions under which rocking starts", source="Wilson 1927"
+        "confidence intervals (Wilson score, level `confidence`) of the share of motions under which rocking starts", source="Wilson 1927"
     )
     median_pga_g: list[float | None] = fact("median peak acceleration of the scaled motions, at each level of intensity", "g")
     confidence: float = fact("level of all intervals")
@@ -197,10 +201,10 @@ class LevelShares(Annual):
     dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
     deviance: float | None = maybe("deviance of that curve")
     degrees_of_freedom: int = maybe("its degrees of freedom")
-    goodness_p_value: float | None = maybe(
-        "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
+    goodness_p_value: float | None = maybe("p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true")
+    median_interval: list[float | None] = maybe(
+        "bootstrap confidence interval of `median`, resampled by motion (with all levels of each motion)"
     )
-    median_interval: list[float | None] = maybe("bootstrap confidence interval of `median`; each motion is drawn with all its levels")
     dispersion_interval: list[float | None] = maybe("bootstrap interval of that dispersion")
     first_collapse_median: float | None = maybe(
         "median of the lognormal curve of the lowest intensity at which a motion causes collapse, in `intensity_unit`",
@@ -212,7 +216,7 @@ class LevelShares(Annual):
     first_collapse_deviance: float | None = maybe("deviance of that curve")
     first_collapse_degrees_of_freedom: int = maybe("its degrees of freedom")
     first_collapse_goodness_p_value: float | None = maybe(
-        "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
+        "p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true"
     )
     first_collapse_median_interval: list[float | None] = maybe("profile-likelihood interval of that median")
     first_collapse_dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
@@ -223,7 +227,7 @@ class LevelShares(Annual):
     uplift_deviance: float | None = maybe("deviance of that curve")
     uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
     uplift_goodness_p_value: float | None = maybe(
-        "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
+        "p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true"
     )
     overturning_given_uplift_median: float | None = maybe(
         "median of the lognormal curve of the probability of collapse if rocking starts, in `intensity_unit`", source="Baker 2015"
@@ -232,7 +236,7 @@ class LevelShares(Annual):
     overturning_given_uplift_deviance: float | None = maybe("deviance of that curve")
     overturning_given_uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
     overturning_given_uplift_goodness_p_value: float | None = maybe(
-        "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
+        "p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true"
     )
     motions_that_collapse: int = fact("number of motions that cause collapse at one or more levels")
     resurrections: int = fact("number of motions that cause collapse at one level but not at a higher level")
@@ -286,14 +290,16 @@ class OverLevels(LevelShares):
         "median of the peak rotation divided by the critical rotation, at each level; a motion that causes collapse counts as 1"
     )
     peak_rotation_ratio_16: list[float | None] = fact(
-        "16th percentile of the peak rotation divided by the critical rotation, at each level; null if this percentile is collapse",
+        "16th percentile of the peak rotation divided by the critical rotation, at each level; "
+        "null if this percentile corresponds to collapse",
         source="Vamvatsikos and Cornell 2002",
     )
     peak_rotation_ratio_50: list[float | None] = fact(
-        "median of the peak rotation divided by the critical rotation, at each level; null if the median is collapse"
+        "median of the peak rotation divided by the critical rotation, at each level; null if the median corresponds to collapse"
     )
     peak_rotation_ratio_84: list[float | None] = fact(
-        "84th percentile of the peak rotation divided by the critical rotation, at each level; null if this percentile is collapse"
+        "84th percentile of the peak rotation divided by the critical rotation, at each level; "
+        "null if this percentile corresponds to collapse"
     )
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
@@ -321,29 +327,39 @@ class DemFragility(LevelShares):
 
     solver: Literal["compliant", "nonsmooth"] = fact("model of the joints")
     direction_deg: float | None = maybe("for solids: direction of the motions in plan, as an angle from +x towards +y", "deg")
-    uncertain: list[str] = fact("uncertain values; each motion acts on a building of its own")
+    uncertain: list[str] = fact("names of the uncertain values; each motion acts on a building with its own sampled values")
     censored: list[int] = fact("runs without a result because blocks still move at their end, at each level; included in `failed`")
     collapse_probability_bounds: list[list[float | None]] = fact(
-        "share of the motions that cause collapse if no censored run ends with collapse, and if all do, at each level"
+        "bounds of the share of motions that cause collapse, at each level: if none of the `censored` runs ends with collapse, "
+        "and if all do"
     )
-    unstable: int = fact("sampled buildings that collapse under their own weight; they count as collapsed")
+    unstable: int = fact("number of sampled buildings that collapse under their own weight; they count as collapsed")
     mean_peak_displacement_ratio: list[float | None] = fact(
         "mean ratio of the peak displacement of a block to the displacement that counts as collapse, at each level; collapse counts as 1"
     )
-    deviation_peak_displacement_ratio: list[float | None] = fact("standard deviation of this ratio, at each level")
-    median_peak_displacement_ratio: list[float | None] = fact("median of this ratio, at each level; collapse counts as 1")
-    peak_displacement_ratio_16: list[float | None] = fact(
-        "16th percentile of this ratio, at each level; null if this percentile is collapse", source="Vamvatsikos and Cornell 2002"
+    deviation_peak_displacement_ratio: list[float | None] = fact(
+        "standard deviation of the ratio of peak displacement to collapse displacement, at each level"
     )
-    peak_displacement_ratio_50: list[float | None] = fact("median of this ratio, at each level; null if the median is collapse")
+    median_peak_displacement_ratio: list[float | None] = fact(
+        "median of the ratio of peak displacement to collapse displacement, at each level; collapse counts as 1"
+    )
+    peak_displacement_ratio_16: list[float | None] = fact(
+        "16th percentile of the ratio of peak displacement to collapse displacement, at each level; "
+        "null if this percentile corresponds to collapse",
+        source="Vamvatsikos and Cornell 2002",
+    )
+    peak_displacement_ratio_50: list[float | None] = fact(
+        "median of the ratio of peak displacement to collapse displacement, at each level; null if the median corresponds to collapse"
+    )
     peak_displacement_ratio_84: list[float | None] = fact(
-        "84th percentile of this ratio, at each level; null if this percentile is collapse"
+        "84th percentile of the ratio of peak displacement to collapse displacement, at each level; "
+        "null if this percentile corresponds to collapse"
     )
 
     def judged(self, demand: Demand) -> Verdict:
         """The fitted median is the capacity; censored runs are a doubt."""
         many = sum(self.censored)
-        return self.judged_over_levels([f"Blocks still move at the end of {many} runs, which have no outcome."] if many else [])
+        return self.judged_over_levels([f"Blocks still move at the end of {many} runs, so these runs have no outcome."] if many else [])
 
 
 class OverDurations(KindResults):
@@ -357,11 +373,11 @@ class OverDurations(KindResults):
     collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each duration")
     uplift_probability: list[float | None] = fact("share of the motions under which rocking starts, at each duration")
     confidence_interval: list[list[float]] = fact(
-        "95 % confidence intervals (Wilson score) of the probability of collapse", source="Wilson 1927"
+        "confidence intervals (Wilson score, level `confidence`) of the probability of collapse", source="Wilson 1927"
     )
     confidence: float = fact("level of these intervals")
     count: list[int] = fact("number of motions with a result, at each duration")
-    failed: int = fact("runs without a result")
+    failed: int = fact("number of runs without a result")
     collapsed: list[int] = fact("number of motions that cause collapse, at each duration")
     uplifted: list[int] = fact("number of motions under which rocking starts, at each duration")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
@@ -395,24 +411,24 @@ class Resonance(KindResults):
 
     outcome: RockingOutcome = fact("outcome under that motion")
     cap_g: float = fact("cap of the ground acceleration", "g")
-    cap_ratio: float = fact("cap over the uplift acceleration")
+    cap_ratio: float = fact("cap of the ground acceleration, divided by the uplift acceleration")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     initial_rotation_ratio: float = fact("rotation at the start, divided by the critical rotation")
     half_cycles: int = fact("number of changes of sign of the motion")
     collapse_time_s: float | None = fact("time after which the structure can no longer recover", "s")
-    switch_times_s: list[float] = fact("when the motion changes sign", "s")
-    switch_spacing_s: list[float] = fact("time between them", "s")
+    switch_times_s: list[float] = fact("times at which the motion changes sign", "s")
+    switch_spacing_s: list[float] = fact("time between changes of sign", "s")
     peak_rotation_rad: list[float] = fact("rotation at the start, and at each change of sign of the motion", "rad")
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, under this motion")
     cap_ratio_for_collapse_within: dict[str, float] = maybe(
-        "for a block, by number of half cycles: lowest limit of the acceleration, divided by the uplift "
-        "acceleration, at which the block collapses within this number"
+        "for a block, by number of half cycles: least cap of the ground acceleration with which the block "
+        "collapses within this number of half cycles, divided by the uplift acceleration"
     )
     least_cap_g: float | None = maybe(
-        "for a block: least cap of the ground acceleration with which the rotation grows; null if the two toes differ", "g"
+        "for a block: least cap of the ground acceleration with which the rotation grows; null for an unsymmetric block", "g"
     )
     least_cap_ratio: float | None = maybe(
         "least cap of the ground acceleration with which the rotation grows, divided by the uplift acceleration"
@@ -422,9 +438,11 @@ class Resonance(KindResults):
         "ratios B/H; columns: initial rotations",
         source="thesis Fig. 6-3",
     )
-    aspects: list[float] = maybe("their B/H", source="thesis Fig. 6-3")
+    aspects: list[float] = maybe("aspect ratios B/H of the blocks in `least_cap_ratios`", source="thesis Fig. 6-3")
     initial_ratios: list[float] = maybe("rotations at the start, divided by the critical rotation", source="thesis Fig. 6-3")
-    impulse_amplitude_g: float = maybe("for a block: amplitude of the single impulses", "g", source="thesis Fig. 6-4")
+    impulse_amplitude_g: float = maybe(
+        "for a block: amplitude of the impulses of `share_of_starts_that_add`", "g", source="thesis Fig. 6-4"
+    )
     share_of_starts_that_add: dict[str, float] = maybe(
         "share of the initial states in which an impulse adds energy, for each ratio of impulse period to natural period",
         source="thesis Fig. 6-4",
@@ -440,7 +458,7 @@ class Resonance(KindResults):
         else:
             outcome = "stands" if least is not None and self.cap_g < least else "open"
             does = f"does not cause collapse within {self.half_cycles} half cycles"
-        known = "" if least is None else f"; above a limit of {least:.3g} g the rotation grows"
+        known = "" if least is None else f". The rotation grows if the limit of the acceleration exceeds {least:.3g} g"
         return judge(
             f"The worst motion with accelerations up to {self.cap_g:.3g} g {does}{known}.",
             self.cap_g,
@@ -454,7 +472,7 @@ class Resonance(KindResults):
 class RuleSpectrum(ResultModel):
     """Sizes that overturn by an impact rule."""
 
-    rule: str = fact("word of [joints] restitution")
+    rule: str = fact("impact rule: a value of [joints] `restitution`")
     restitution: float = fact("coefficient of restitution (angular velocity after / before impact), limited to 0 to 1")
     overturned: int = fact("sizes that collapse")
 
@@ -489,7 +507,7 @@ class RockingSpectrum(KindResults):
 class HarmonicMap(KindResults):
     """harmonic-map: response to harmonic motion over frequency and amplitude."""
 
-    cycles: int = fact("cycles of the motion")
+    cycles: int = fact("number of cycles of the motion")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     frequencies_Hz: list[float] = fact("frequencies", "Hz")
     frequency_ratios: list[float] = fact("omega/p of the frequencies")

@@ -24,7 +24,7 @@ class AnchorageCheck(ResultModel):
     part: str = fact("part of the anchorage: bar, bearing of the plate, punching of the wall, or pull-out of the anchor")
     capacity_N: float | None = fact("capacity with the given sizes; null if the size is calculated from the force", "N")
     needed: float = fact("least size at which this part carries the required force")
-    size: str = fact("which size, with its unit")
+    size: str = fact("name of the size in `needed`, with its unit")
 
 
 class OtherVerdict(ResultModel):
@@ -36,7 +36,9 @@ class OtherVerdict(ResultModel):
     margin_before: float | None = fact(
         "critical scale factor of the hazard before the intervention (or lower end of its interval); null if not known"
     )
-    margin_after: float | None = fact("the same after")
+    margin_after: float | None = fact(
+        "critical scale factor of the hazard after the intervention (or lower end of its interval); null if not known"
+    )
 
 
 class Intervention(ResultModel):
@@ -48,7 +50,7 @@ class Intervention(ResultModel):
         "hoop or chain in space, or change of a key"
     )
     key: str = maybe("key of the deck that the intervention changes")
-    place: str = fact("place of the intervention; for a changed key, its present value")
+    place: str = fact("place of the intervention; for a changed key, its value in the deck")
     start_m: list[float] = maybe("first end of a tie: [x, y], in space [x, y, z]; for a hoop, a point at the height of the hoop", "m")
     via_m: list[list[float]] = maybe("points through which a chain runs", "m")
     stiffness_N_m: float = maybe(
@@ -61,7 +63,8 @@ class Intervention(ResultModel):
     required_N: float | None = maybe("least yield force of the tie that meets the target; null if none does", "N")
     depth_m: float = maybe("depth out of plane that one tie serves", "m")
     greatest_capacity: float | None = fact(
-        "greatest value with any of the sizes, in the unit of the target; null if no collapse mechanism remains, or without a result"
+        "best value of the target quantity with any of the sizes (greatest value; for a probability, the least), in the unit of the "
+        "target; null if no collapse mechanism remains, or without a result"
     )
     capacity_after: float | None = fact("value of the target quantity with the required size, in the unit of the target")
     safety_factor_after: float | None = fact("safety factor with the required size: value divided by demand")
@@ -88,7 +91,7 @@ class CombinedTie(ResultModel):
 
     name: str = fact("its name")
     place: str = fact("place")
-    force_N: float = fact("its yield force", "N")
+    force_N: float = fact("yield force of the tie", "N")
 
 
 class FragilityPair(ResultModel):
@@ -99,10 +102,10 @@ class FragilityPair(ResultModel):
     motions: int = fact("number of motions")
     before: list[float | None] = fact("share of the motions that cause collapse of the existing building")
     before_low: list[float] = fact("lower end of the 95 % confidence interval (Wilson score) of `before`", source="Wilson 1927")
-    before_high: list[float] = fact("upper end", source="Wilson 1927")
+    before_high: list[float] = fact("upper end of the 95 % confidence interval (Wilson score) of `before`", source="Wilson 1927")
     after: list[float | None] = fact("share of the motions that cause collapse of the strengthened building")
     after_low: list[float] = fact("lower end of the 95 % confidence interval (Wilson score) of `after`", source="Wilson 1927")
-    after_high: list[float] = fact("upper end", source="Wilson 1927")
+    after_high: list[float] = fact("upper end of the 95 % confidence interval (Wilson score) of `after`", source="Wilson 1927")
 
 
 class Strengthen(KindResults):
@@ -122,7 +125,7 @@ class Strengthen(KindResults):
     mechanism_before: str = fact("governing collapse mechanism of the existing building")
     interventions: list[Intervention] = fact("alternative interventions; the cheapest that meets the target comes first")
     combination: list[CombinedTie] = maybe("combination of ties with the least total force, if more than one tie carries a force")
-    combination_cost: float = maybe("its cost")
+    combination_cost: float = maybe("relative cost of the combination")
     combination_meets_target: bool = maybe(
         "whether the combination meets the target; if joints in compression slide, whether it does so without dilatancy too"
     )

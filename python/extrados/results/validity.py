@@ -149,9 +149,10 @@ DemDomain = Validity(
     "between two tried ones may cause collapse. The limits of validity of the discrete-element analysis apply.",
 )
 DemFragility = Validity(
-    "The motions of the set act on blocks that move independently, as in discrete elements, each motion on a building of its own values.",
+    "The motions of the set act on blocks that move independently, as in the discrete-element analysis. Each motion acts on a building "
+    "with its own sampled values.",
     "The probability is that of the set of motions and of the given uncertainties. Runs whose blocks still move at the end have no "
-    "outcome. The limits of discrete elements apply.",
+    "outcome. The limits of validity of the discrete-element analysis apply.",
 )
 DemParameters = Validity(
     "Empirical rules give joint stiffness, impact frequency and damping. No motion is run.",
@@ -174,15 +175,16 @@ Modes = Validity(
 )
 FrameModes = Validity(
     "Piers and spandrels vibrate about the equilibrium under self-weight. Walls have no out-of-plane stiffness.",
-    "Sections that are open under self-weight stay open. The masses of walls out of their planes "
-    "move with the corners, and linearly between corners.",
+    "Sections that are open under self-weight stay open. Out of their planes, the masses of walls "
+    "move with the corners, and linearly between them.",
 )
 FramePushover = Validity(
     "Walls are plane frames of piers and spandrels between rigid nodes. Sections carry no tension and crush; piers "
     "slide or crack in shear; beyond its drift limit an element loses its lateral strength and keeps its vertical "
     "load. All nodes of a wall on one level have the same displacement along the wall.",
     "The frame model excludes out-of-plane failure of walls: with a code, each wall is checked for it separately. Spandrels carry no "
-    "normal force except that of ties and ring beams. A corner lifts the weight on the effective width of its flange. Strengths and "
+    "normal force except that of ties and ring beams. At a corner, a wall lifts at most the weight on the effective width of its flange. "
+    "Strengths and "
     "drift limits are those of codes, and tested walls differ from them by about 20 %. With irregular openings the division into piers "
     "is uncertain.",
 )

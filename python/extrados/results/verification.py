@@ -18,9 +18,9 @@ class IdealisedCurve(ResultModel):
     mass_ratio: float = fact("mass ratio: participating mass m* Gamma divided by the total mass")
     period_s: float = fact("T* = 2 pi sqrt(m*/k*)", "s")
     yield_load_N: float = fact("base shear of the plateau", "N")
-    yield_displacement_m: float = fact("displacement at its start", "m")
+    yield_displacement_m: float = fact("displacement at the start of the plateau", "m")
     ultimate_displacement_m: float = fact(
-        "ultimate displacement: displacement at collapse, up to which both curves enclose equal areas", "m"
+        "ultimate displacement: displacement at collapse; up to it, the capacity curve and the bilinear curve enclose equal areas", "m"
     )
     ended_by: Literal["drop", "drift", "end"] = fact(
         "end of the curve. drop: base shear decreased by 20 %; drift: all piers of one storey of a wall at their limit "
@@ -41,7 +41,7 @@ class DisplacementCheck(ResultModel):
         "factor on the seismic action at which the check (displacement and q*) is just satisfied; null if not found"
     )
     demand_pga_g: float | None = fact("demand: peak ground acceleration a_g S of the seismic action", "g")
-    capacity_pga_g: float | None = fact("capacity: peak ground acceleration a_g S times the factor; capacity / demand is alpha_PGA", "g")
+    capacity_pga_g: float | None = fact("capacity: peak ground acceleration a_g S times `factor`; capacity / demand is alpha_PGA", "g")
     return_period_years: float | None = fact("return period of the seismic action; null if not known", "year")
     capacity_return_period_years: float | None = fact(
         "return period of the action that the building can carry, interpolated between the limit states "
@@ -55,10 +55,10 @@ class DisplacementCheck(ResultModel):
 class BuildingFragility(ResultModel):
     """Lognormal fragility by N2 over a set of motions, each scaled; its scatter is that of the motions alone."""
 
-    limit_state: str = fact("limit state whose displacement capacity the capacity curve reaches first")
+    limit_state: str = fact("limit state, reached as soon as one of the capacity curves reaches its displacement capacity")
     motions: int = fact("motions that were used")
     median_pga_g: float = fact("median of the peak ground accelerations that the building can carry", "g")
-    dispersion: float = fact("standard deviation of their logarithms")
+    dispersion: float = fact("standard deviation of the logarithms of these accelerations")
 
 
 class Verification(ResultModel):
@@ -72,10 +72,10 @@ class Verification(ResultModel):
     curves: list[IdealisedCurve] = fact("each curve as an oscillator")
     checks: list[DisplacementCheck] = fact("checks of each capacity curve at each limit state")
     zeta_E: float | None = fact(
-        "zeta_E of NTC at SLV: least factor on the seismic action for which the check is satisfied; null without a demand",
+        "zeta_E of NTC at SLV: least value of `factor` (seismic action carried / required) of all checks at SLV; null without a demand",
         source="NTC 2018 8.3",
     )
-    nbs_percent: float | None = maybe("NZSEE: %NBS, the least factor", "%")
+    nbs_percent: float | None = maybe("%NBS of NZSEE: least value of `factor` of all checks at ULS, in percent", "%")
     fragility: list[BuildingFragility] = maybe("fragility of the building for the motions of the deck")
     violated: list[str] = fact(
         "violated assumptions on the unsafe side. If there are any, a satisfied code check gives no verdict: the outcome is open"
