@@ -170,8 +170,8 @@ def doubts_of_rigid_mortar(values: ContactValues) -> list[str]:
         return []
     return [
         *_doubts_of_tension(values),
-        "with rigid contacts mortar holds as long as any forces in equilibrium within its strength exist, as in limit analysis. Where "
-        "several joints, or both ends of a joint, share a force, brittle mortar may fail earlier: compare with springs",
+        "with rigid contacts, as in limit analysis, mortar holds if its strength allows any equilibrium. Brittle mortar may fail earlier "
+        "where several joints, or both ends of a joint, share a force: compare with springs",
     ]
 
 

@@ -46,7 +46,7 @@ class Thrust:
                 self.stress,
                 at,
                 "Pa",
-                f"compressive stress at the {where}: linear pressure without tension; infinite where an edge or a corner alone carries",
+                f"compressive stress at the {where}, linear and without tension; infinite where a single edge or corner carries the force",
             ),
         }
 

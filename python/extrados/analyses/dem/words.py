@@ -35,7 +35,7 @@ def _fate(r: DemRun | SolidDemRun, joint: str) -> str:
     if r.outcome == "slid":
         return (
             f"Blocks slide by up to {three_figures(1e3 * r.peak_slip_m)} mm ({100 * r.slip_ratio:.3g} % of the {joint} "
-            f"{r.slipped_joint}). The slip at the end is {three_figures(1e3 * r.residual_slip_m)} mm; no {joint} opens"
+            f"{r.slipped_joint}). The slip at the end of the run is {three_figures(1e3 * r.residual_slip_m)} mm; no {joint} opens"
         )
     if r.outcome == "at-rest":
         return f"No {joint} opens or slides"

@@ -192,7 +192,7 @@ def cuts_of(building: Building, options: Thrust) -> list[Cut]:
         if len(contacts):
             found.append(_cut(assembly, table, contacts, above, middle, None if options.section else options.direction or 0.0, key))
         elif options.section:
-            raise Refused(f"section '{table.name}': its cut crosses no contact between two blocks", key)
+            raise Refused(f"section '{table.name}': its cut crosses no contact between two blocks: move the cut", key)
     return found
 
 

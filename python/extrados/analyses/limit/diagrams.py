@@ -107,7 +107,7 @@ def _radial(
     around = np.column_stack([np.cos(turn), np.sin(turn)])
     crossed = [[end[0] for bed in beds for end in _ends(bed, centre, way)[0] if end[0] > 0.0] for way in around]
     if not all(crossed):
-        raise Refused("a radial diagram requires supports all around, but one meridian ends beside them: give another `form`", FORM)
+        raise Refused("a radial diagram requires supports all around, but one meridian ends beside the supports: give another `form`", FORM)
     feet = np.array([0.5 * (min(ends) + max(ends)) for ends in crossed])
     radius = float(feet.mean())
     reach = np.linspace(0.0, radius, PROFILE)

@@ -376,7 +376,10 @@ def _worst_arrays(assembly: Assembly, job: Places, k: int, worst: Collapse, heav
             "joints of each chain (arch or stack), one chain after the other",
         ),
         "chain_start": Array(
-            np.cumsum([0, *map(len, chains)]), ("chain_edge",), "", "index of the first joint of each chain; the last value is the end"
+            np.cumsum([0, *map(len, chains)]),
+            ("chain_edge",),
+            "",
+            "index of the first joint of each chain in `chain_joint`; the last value is the length of `chain_joint`",
         ),
     }
 

@@ -209,7 +209,10 @@ def _without_dilatancy(
     if isinstance(limit, CrushingLimit) or options.mortar == "ductile":
         return {"non_associated_reason": "with crushing, or with mortar, only the upper bound is calculated"}, {}
     if options.friction_rule == "associated" and contacts > MOST_BESIDE:
-        why = f'the structure has more than {MOST_BESIDE} contacts, so this state is calculated only with friction_rule = "non-associated"'
+        why = (
+            f"the structure has more than {MOST_BESIDE} contacts, so collapse without dilatancy is calculated only with "
+            'friction_rule = "non-associated"'
+        )
         return {"non_associated_reason": why}, {}
     rows, states = [], {}
     sought = list(dict.fromkeys(directions))
@@ -273,7 +276,10 @@ def scene_arrays(assembly: SolidAssembly) -> dict[str, Array]:
         "solid_vertex": Array(np.concatenate([p.vertices for p in assembly.parts]), ("vertex", "axis3"), "m", "vertices of the solids"),
         "solid_face": Array(np.concatenate(faces), ("face_vertex",), "", "vertices of each face, counter-clockwise as seen from outside"),
         "solid_face_start": Array(
-            np.cumsum([0, *map(len, faces)]), ("face_edge",), "", "index of the first vertex of each face; the last value is the end"
+            np.cumsum([0, *map(len, faces)]),
+            ("face_edge",),
+            "",
+            "index of the first vertex of each face; the last value is the number of all vertices",
         ),
         "solid_face_block": Array(owner, ("face",), "", "stone of each face"),
         "solid_centroid": Array(assembly.centroid, ("block", "axis3"), "m", "centroids of the blocks"),

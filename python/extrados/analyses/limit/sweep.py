@@ -306,10 +306,15 @@ def _examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: 
     of = [number for number, count in blocks.items() for _ in range(count)]
     return {
         "example_mechanism": Array(
-            np.array(of, dtype=int), ("example_path",), "", "number of the mechanism that each of these blocks shows"
+            np.array(of, dtype=int), ("example_path",), "", "number of the mechanism to which each block outline of `example` belongs"
         ),
-        **packed("example", outlines, "m", "outlines of the blocks of one section for each mechanism (number of the mechanism / block)"),
-        **packed("example_moved", moved, "m", "the same, moved"),
+        **packed(
+            "example",
+            outlines,
+            "m",
+            "block outlines of one structure for each mechanism; the name of a path is mechanism number / block number",
+        ),
+        **packed("example_moved", moved, "m", "outlines of `example`, moved by the mechanism"),
     }
 
 
@@ -332,7 +337,9 @@ def _solid_examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], num
             if name.startswith("solid_")
         }
         pose = pose_of(one.assembly, one.mechanism.motion)
-        found[f"solid_pose_{number}"] = Array(pose, (f"block_{number}", "pose"), "m, m, m, rad, rad, rad", "the mechanism carried on")
+        found[f"solid_pose_{number}"] = Array(
+            pose, (f"block_{number}", "pose"), "m, m, m, rad, rad, rad", "mechanism at a finite displacement"
+        )
     return found | {"example_mechanism": Array(np.array(shown, dtype=int), ("example",), "", "numbers of the mechanisms that are drawn")}
 
 

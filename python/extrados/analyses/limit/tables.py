@@ -125,16 +125,19 @@ class Section(Table):
     """A section of blocks in space whose thrust is sought: a plane cut, or named contacts."""
 
     name: str = key(about="its name", max_length=80)
-    x: Length | None = key(None, "x of a cut: all contacts between blocks whose centroids lie on both sides of it")
-    y: Length | None = key(None, "cut across y")
-    z: Length | None = key(None, "level cut at this height")
+    x: Length | None = key(
+        None, "x of a vertical cut. Its section is all contacts between blocks with centroids on different sides of the cut"
+    )
+    y: Length | None = key(None, "y of a vertical cut, as an alternative to `x`")
+    z: Length | None = key(None, "height of a horizontal cut, as an alternative to `x`")
     joints: list[str] | None = key(
         None, 'names of contacts, or of groups of contacts, instead of a cut; "ground" means all supports', min_length=1, max_length=10000
     )
     toward: Angle | None = key(
         None,
-        "direction of the thrust in plan: angle from +x towards +y. The thrust acts on the blocks at greater x or y, or on the blocks "
-        "or the ground below. Default: perpendicular to a vertical cut, otherwise outward from the middle of the structure",
+        "direction of the thrust in plan: angle from +x towards +y. The thrust of a vertical cut acts on the blocks at greater x or y; any "
+        "other thrust acts on the blocks or the ground below. Default: perpendicular to a vertical cut, otherwise outward from the "
+        "middle of the structure",
         ge=-360,
         le=360,
     )
@@ -255,8 +258,8 @@ class MovingSupports(BuildingAnalysis, Animated):
     )
     movement: Length | None = key(
         None,
-        "size of the movement of the right support, for structures whose movement is not continued to "
-        "collapse; default: 1/1000 of the width",
+        "size of the movement of the right support; not for an arch without ties, which is moved up to collapse. "
+        "Default: 1/1000 of the width",
         gt=0,
     )
     steps: int = key(200, "for an arch: number of steps from the start of the movement to collapse", ge=10, le=5000)

@@ -125,7 +125,7 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
             else f"stays within the central {100 * part:.1f} % of the joints (geometric safety factor {safety:.2f})"
         )
         needed = np.inf if central.required_friction is None else central.required_friction
-        needs = f"{keeps} and requires a friction of {needed:.2f}"
+        needs = f"{keeps} and requires a coefficient of friction of {needed:.2f}"
     if r.chain is None:
         text = (
             f"At {r.gamma_g:g} g {(f'the most central state {needs}' if needs else 'an equilibrium state is admissible')}. "

@@ -318,7 +318,7 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
                 np.cumsum([0, *map(len, outlines)]),
                 ("block_edge",),
                 "",
-                "index of the first vertex of each block; the last value is the end",
+                "index of the first vertex of each block; the last value is the number of all vertices",
             ),
             "crack_point": Array(found.state.points(found.assembly), ("joint", "axis"), "m", "thrust line, cracked"),
         }

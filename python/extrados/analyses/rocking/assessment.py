@@ -190,7 +190,7 @@ def _undecided(margins: dict[str, float | None]) -> list[str]:
     if len(falls) < 2:
         return []
     each = ", ".join(f'"{rule}" {"none" if margin is None else f"{margin:.3g}"}' for rule, margin in margins.items())
-    return [f"The impact rule decides the verdict. Safety factor by each impact rule: {each}."]
+    return [f"The impact rule decides the verdict. Safety factor with each impact rule: {each}."]
 
 
 def _row(rank: int, impulse: Impulse, fit: Fit, own: Fit, radius: float) -> out.AssessedImpulse:

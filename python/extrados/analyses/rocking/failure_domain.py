@@ -383,7 +383,7 @@ def run(context: Context, options: FailureDomain) -> Result:
         friction = f" at friction {conditions.friction:.2f}" if conditions.friction is not None else ""
         result.warnings.append(
             f"{handed} of {curves.codes.size} pulses were continued with rigid contacts: joints slide{friction} "
-            f"in {conditions.sliding} pulses, and hinges form at other joints in {conditions.hinges_elsewhere}. "
+            f"in {conditions.sliding} pulses, and hinges form outside the mechanism in {conditions.hinges_elsewhere}. "
             "At these durations the failure curves are accurate to one cell of the map."
         )
         if options.at_amplitudes:

@@ -20,7 +20,7 @@ def hand_over_cells() -> Any:
     """Key of analyses that draw a map."""
     return key(
         100,
-        "if joints slide or hinges form at other joints in at most this number of cells of the map, "
+        "if joints slide or hinges form outside the mechanism in at most this number of cells of the map, "
         "these cells are continued with rigid contacts; if there are more, none is continued. 0: never",
         ge=0,
         le=1_000_000,

@@ -222,7 +222,7 @@ def run_curves(
         if damage is not None:
             if damage.shape[1] != core_model.points:
                 raise Refused(
-                    f"resume_from: the earlier wall has {damage.shape[1]} integration points (with those of bars), "
+                    f"resume_from: the earlier wall has {damage.shape[1]} integration points (including those of bars), "
                     f"but this wall has {core_model.points}",
                     ("analysis", "resume_from"),
                 )
@@ -642,7 +642,7 @@ class _Run:
                 events.interrupted = True
             else:
                 if state is None:
-                    curve.warnings.append("the state at the peak could not be recalculated from the batch of events before it")
+                    curve.warnings.append("the state at the peak could not be recalculated and is therefore not saved")
                 else:
                     kept.append(state)
         for step in (self.drop_step, self.last_step):

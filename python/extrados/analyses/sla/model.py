@@ -243,7 +243,7 @@ def _freedoms(mesh: Mesh, held: set[tuple[int, int]], moved: Load | None) -> tup
         if all(share == 0.0 for _, _, share in common):
             raise BadGeometry("displacement: every `ratio` is 0, so nothing moves")
         if len({n for n, _, _ in common}) < len(common):
-            raise BadGeometry("two parts of the displacement have a node in common")
+            raise BadGeometry("two parts of the displacement have a node in common: give places that do not overlap")
         ties.append(common)
     tied = {(n, d) for tie in ties for n, d, _ in tie}
     if clash := held & tied:

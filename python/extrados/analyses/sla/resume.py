@@ -119,7 +119,9 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         apart = float(np.abs(there - here).max())
         if apart > 1e-6 * model.mesh.size:
             raise Refused(
-                f"resume_from: the integration points of the earlier wall are up to {apart:.3g} m away from those of this wall", RESUME
+                f"resume_from: the integration points of the earlier wall are up to {apart:.3g} m away from those of "
+                "this wall; the mesh must be the same",
+                RESUME,
             )
         if len(get["event_point"]) and get["event_point"].max() < 0:
             raise Refused("resume_from: the earlier run was incremental and has no events from which to continue", RESUME)

@@ -89,7 +89,7 @@ class Supports:
             nodes = self.model.mesh.nodes_at(part, f"{what}.parts[{i}]")
             at, by = self.equation[nodes, AXES[load.direction]], part.ratio / self.factor[nodes, AXES[load.direction]]
             if (np.isfinite(rate[at]) & (rate[at] != by)).any():
-                raise BadGeometry(f"{what}: two parts of the displacement have a node in common, or nodes that are tied")
+                raise BadGeometry(f"{what}: two parts of the displacement move the same node, or nodes that are tied together")
             rate[at] = by
         if not np.nan_to_num(rate).any():
             raise BadGeometry(f"{what}: every `ratio` is 0, so nothing moves")

@@ -96,7 +96,7 @@ class Stage(Table):
     free: list[Hold] = key(
         [],
         "supports (of the building, or of an earlier stage) that are removed in this stage. Their "
-        "reactions are reduced to zero in proportion",
+        "reactions decrease to zero as lambda increases to 1",
         max_length=100,
     )
     reference: list[Load] = key(
@@ -347,7 +347,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         "method after an event for which no multiplier of loads B is admissible at all points. "
         '"continue": equilibrium iterations in displacement control (for rotating cracks without bed '
         'joints, bars and joints; otherwise load-unload). "load-unload": loads A remain, and the '
-        'greatest lower limit decides. "proportional": all loads of the last equilibrium state are '
+        'point with the greatest lower limit of lambda is damaged. "proportional": all loads of the last equilibrium state are '
         'reduced together (intermittent proportional loading). "force-release": the force that a tooth '
         "releases acts on the other points before the load increases again",
         source="thesis 4.3.1; Pari, Hendriks and Rots 2020; Elias, Frantik and Vorechovsky 2010",
@@ -361,7 +361,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         source="Oliver, Huespe and Cante 2008; Gutierrez 2004",
     )
     algorithm: Literal["update", "refactor"] = key(
-        "update", "matrix factor at each event. update: the factor is updated; refactor: the matrix is factorised again"
+        "update", "factorised stiffness matrix at each event. update: the factor is updated; refactor: the matrix is factorised again"
     )
     states: list[Annotated[int, Field(ge=1)]] = key(
         [], "numbers of the events whose state is saved, besides the peak and the last event", max_length=200
