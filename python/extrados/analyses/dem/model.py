@@ -111,8 +111,8 @@ def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end
     )
     raise {"unsettled": Falls, "restless": Restless}.get(run.reason, Refused)(
         {
-            "step": f"the time step exceeds the critical time step of {run.critical_step:.3g} s",
-            "overlap": f"{' and '.join(names)} overlap at the start",
+            "step": f"the time step exceeds the critical time step of {run.critical_step:.3g} s: give a smaller `time_step`",
+            "overlap": f"{' and '.join(names)} overlap at the start: correct the geometry",
             "unsettled": f"the structure does not stand under its own weight: {first} falls",
             "restless": f"the structure does not come to rest under its own weight in {run.settling_steps} steps ({first} moves most), so "
             f"discrete elements do not show whether it stands{wedged}",

@@ -92,7 +92,7 @@ class DemTable(BuildingAnalysis):
     )
     mass_damping: float = key(0.0, "mass-proportional damping alpha in 1/s; not physical for rocking blocks", ge=0, le=1e4)
     merge: Literal["none", "three-bars"] = key(
-        "none", "three-bars: the voussoirs of an arch are joined to the three rigid bars of its four-hinge mechanism"
+        "none", "three-bars: the voussoirs of an arch are merged into the three rigid bars of its four-hinge mechanism"
     )
     fraction: float | None = key(
         None, "time step, as a fraction of the critical time step. Default: 0.3 in the plane, 0.5 in space", gt=0, le=0.9

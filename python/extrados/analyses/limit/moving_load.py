@@ -566,7 +566,7 @@ def _words(options: MovingLoad, r: out.MovingLoad, what: str, where: str, positi
     if options.force is not None:
         text += f" The given load of {three_figures(options.force / 1000.0)} kN has a safety factor of {r.safety_factor:.2f}."
         if r.adequacy_factor is not None and abs(r.adequacy_factor / r.safety_factor - 1.0) > 1e-9:
-            text += f" With its partial factors the adequacy factor is {r.adequacy_factor:.3g}."
+            text += f" With the partial factors of the load, the adequacy factor is {r.adequacy_factor:.3g}."
     if r.permissible_factor is not None:
         text += (
             f" Permissible limit state: up to {r.permissible_factor:.3g} times the train, a thrust line exists "

@@ -148,7 +148,7 @@ def refuse_falling(there: Programme, back: Programme, first: float, neglects: tu
         low, high = sorted((there.gamma, -back.gamma))
         raise CannotStand(
             f"the structure can stand only under a horizontal load between {low:.4f} and {high:.4f} g along {first:g} "
-            "degrees; certificate: the mechanism of the smaller load, in which the weights do positive work",
+            "degrees; certificate: the mechanism at the smaller of these loads, in which the weights do positive work",
             neglects=neglects,
         )
 

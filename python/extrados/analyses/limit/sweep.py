@@ -348,16 +348,16 @@ def _words(options: Sweep, r: out.Sweep, located: bool) -> str:
     best, most = f"{r.optimum_value:.4g}{unit}", r.optimum_collapse_acceleration_g
     level = [v for v, g in zip(r.values, r.collapse_accelerations_g, strict=True) if g is not None and abs(g - most) <= LEVEL * abs(most)]
     if r.locked_limits:
-        where = f"greatest near locking, at {best}"
+        where = f"near locking, at {best}"
     elif len(level) == len(r.values):
-        where = "the same throughout"
+        where = "the same for all values"
     elif len(level) > 1:
-        where = f"greatest from {level[0]:.4g} to {level[-1]:.4g}{unit}"
+        where = f"at values from {level[0]:.4g} to {level[-1]:.4g}{unit}"
     else:
-        where = f"greatest at an optimum of {best}" if r.optimum_inside else f"greatest at the end of the range, {best}"
+        where = f"at the optimum {best}" if r.optimum_inside else f"at the end of the range, {best}"
     text = (
-        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{unit}: the collapse acceleration is {where}, {most:.4f} g "
-        f"({r.optimum_tilt_angle_deg:.2f} degrees). {len(r.mechanisms)} mechanism{'s' if len(r.mechanisms) != 1 else ''}"
+        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{unit}: the greatest collapse acceleration is {most:.4f} g "
+        f"({r.optimum_tilt_angle_deg:.2f} degrees), {where}. {len(r.mechanisms)} mechanism{'s' if len(r.mechanisms) != 1 else ''}"
     )
     moves = [f"{c.before} to {c.after} at {c.value:.4g}" for c in r.changes if c.before and c.after]
     locked = ", ".join(f"{v:.4g}" for v in r.locked_limits)

@@ -358,7 +358,7 @@ class MovingLoad(LimitAnalysisTable):
     gap: Length | None = key(None, "gap between the bogies of an SV vehicle: 1.2 (the default), 5 or 9 m", ge=1.2, le=9.0)
     axles: list[Length] = key([0.0], "distance of each axle behind the first axle", max_length=200)
     shares: list[float] | None = key(None, "share of the load on each axle; default: equal shares", max_length=200)
-    force: Force | None = key(None, "total load of the axles; adds the safety factor", gt=0)
+    force: Force | None = key(None, "total load of the axles; the results then include the safety factor", gt=0)
     axle_loads: list[Force] | None = key(None, "load of each axle; replaces `shares` and `force`", max_length=200)
     uniform: list[UniformLoad] = key([], "uniform loads along the train; these require `axle_loads`, or axles = []", max_length=50)
     adverse: bool = key(

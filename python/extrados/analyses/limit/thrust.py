@@ -80,7 +80,7 @@ def run(context: Context, options: Thrust) -> Result:
     result.results = r
     result.arrays = geometry_arrays(assembly) | tie_arrays(context.building, answer.loads, states)
     result.arrays |= load_arrays(assembly, options.load)
-    about = {"least": "of least thrust", "most": "of greatest thrust", "central": "that is most central"}
+    about = {"least": "for the least thrust", "most": "for the greatest thrust", "central": "in the most central equilibrium"}
     for name, state in states.items():
         result.arrays.update(state_arrays(assembly, name, state, about[name]))
         result.arrays.update(graphic_arrays(answer, name, state, about[name]))

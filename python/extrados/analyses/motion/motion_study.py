@@ -226,10 +226,10 @@ def describe(name: str, r: out.OneMotion) -> str:
     if r.directed_pulses is not None:
         like = [one for one in r.directed_pulses if one.pulse_like]
         text += (
-            f"Over all directions it is pulse-like: period {like[0].period_s:.2f} s at {like[0].angle_deg:.0f} degrees from the first component "
-            "(Shahi and Baker 2014). "
+            f"Over all directions the motion is pulse-like: period {like[0].period_s:.2f} s at {like[0].angle_deg:.0f} degrees "
+            "from the first component (Shahi and Baker 2014). "
             if like
-            else "Over all directions it is not pulse-like (Shahi and Baker 2014). "
+            else "Over all directions the motion is not pulse-like (Shahi and Baker 2014). "
         )
     pulse = r.wavelet_pulse
     if pulse.pulse_like:

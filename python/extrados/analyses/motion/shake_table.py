@@ -48,8 +48,8 @@ def run(context: Context, options: ShakeTable) -> Result:
     )
     result.answer = (
         (
-            f"The stroke limits the table to {100 * table.stroke:.3g} cm below {corners[0]['stroke_to_flow']:.3g} Hz, and the "
-            f"velocity to {100 * velocity:.3g} cm/s above it; "
+            f"Below {corners[0]['stroke_to_flow']:.3g} Hz, the stroke limits the table to {100 * table.stroke:.3g} cm. Above this "
+            f"frequency, the velocity limits the table to {100 * velocity:.3g} cm/s; "
         )
         + "; ".join(
             f"with {mass:.4g} kg, the force limits the table above {c['flow_to_force']:.3g} Hz"

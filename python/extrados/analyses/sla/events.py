@@ -297,8 +297,9 @@ def bring_on_constant_loads(
         far = float(np.abs(core_model.displacement(0.0)[:, : model.place.shape[1]]).max())
         if not far <= FAR * model.extent:
             raise NotCarried(
-                f"the structure cannot carry the constant loads. They would move it by {far:.3g} m, more than 1/10 of its size of "
-                f"{model.extent:.3g} m: the structure is a mechanism, held only by the residual stiffness of open joints and cracks",
+                f"the structure cannot carry the constant loads. The displacement under these loads would be {far:.3g} m, more than 1/10 "
+                f"of the size of the structure ({model.extent:.3g} m). The structure is a mechanism, held only "
+                "by the residual stiffness of open joints and cracks",
                 WHOLE,
             )
     return found, rubs

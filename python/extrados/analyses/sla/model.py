@@ -319,7 +319,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     else:
         unit = resultant(reference) if not options.stages else 1.0  # each stage has its own
     if not options.stages and (freedoms.equation[np.abs(reference) > 0] < 0).all():
-        raise BadGeometry("the reference load acts only on nodes that are restrained")
+        raise BadGeometry("the reference load acts only on nodes that are restrained: load other nodes")
     behaviour, ratio = _behaviour(mesh, options, bool(constant_loads or options.stages))
     # Of stages, of which each has its own, that while the constant loads come on
     growing = reference if not options.stages else constant

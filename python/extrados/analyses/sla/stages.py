@@ -219,7 +219,7 @@ def _prepare(
     else:
         reference = nodal_forces(mesh, stage.reference, f"{what}.reference")
         if not (~wall.fixed[supports.equation] & (reference != 0.0)).any():
-            raise BadGeometry(f"{what}: the reference load acts only on nodes that are restrained")
+            raise BadGeometry(f"{what}: the reference load acts only on nodes that are restrained: load other nodes")
     moved = np.flatnonzero(wall.fixed & ((value != 0.0) | (rate != 0.0)))
     unit = 1.0 if stage.moves else resultant(reference)
     own = options.model_copy(

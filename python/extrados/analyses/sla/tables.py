@@ -189,8 +189,8 @@ class CrackOptions(Table):
     crack_band: Length | None = key(None, "width h of the crack band; default: by `crack_band_rule`", gt=0)
     crack_band_rule: Literal["projected", "extent", "area"] = key(
         "projected",
-        "rule for the width of the crack band. projected: the width of a row of elements across the crack; extent: that of "
-        "the element, for cracks askew to the mesh that open every element on their way; area: the "
+        "rule for the width of the crack band. projected: the width of a row of elements across the crack; extent: the "
+        "extent of the element across the crack, for cracks askew to the mesh that open every element on their way; area: the "
         "rule of the thesis, sqrt(2 A) for linear and sqrt(A) for quadratic elements of area A",
     )
     cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
