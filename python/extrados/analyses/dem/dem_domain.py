@@ -200,7 +200,7 @@ def _found(context: Context, options: DemDomain, model: Model | SolidModel, vari
     if checked is not None:
         numbers["cross_check"] = _agreement(checked, amplitudes, durations)
         result.arrays |= {
-            "duration": Array(durations, ("duration",), "s", "durations of the cells of the map that both solvers calculated"),
+            "duration": Array(durations, ("duration",), "s", "durations for which both solvers calculated the map"),
             "fails": Array(
                 checked,
                 ("solver", "amplitude", "duration"),

@@ -108,7 +108,7 @@ def _refuse_crushing(building: Building, rigid: bool) -> None:
     """Refused where corners are to crush without a strength, on rigid contacts, or at joints with mortar."""
     key = ("analysis", "crushing")
     if building.material.compressive_strength is None:
-        raise Refused("crushing of corners requires a compressive_strength of the [material]", key)
+        raise Refused("crushing of corners requires `compressive_strength` of [material]", key)
     if rigid:
         raise Refused("crushing of corners requires springs, but `cross_check` also uses rigid contacts: remove `cross_check`", key)
     for name in ("cohesion", "tension"):

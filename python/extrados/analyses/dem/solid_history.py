@@ -138,7 +138,7 @@ def contact_arrays(opening: np.ndarray, slip: np.ndarray, state: np.ndarray) -> 
             state.astype(np.int8), ("time", "contact"), "", "state of each contact: 0 closed, 1 open at some corners, 2 fully open"
         ),
         "opening": Array(opening, ("time", "contact"), "m", "greatest gap of each contact, over its corners"),
-        "slip": Array(slip, ("time", "contact"), "m", "slip of each contact, at the corner that is most closed"),
+        "slip": Array(slip, ("time", "contact"), "m", "slip of each contact, at its corner with the smallest gap"),
     }
 
 

@@ -16,7 +16,7 @@ from extrados.model.geometry.solids.strands import solid_at
 def chain_of(assembly: Assembly, name: str | None) -> str | None:
     """The chain of a name, the first where none is given, None where the assembly has no chain."""
     if name is not None and name not in assembly.chains:
-        known = f"there are {', '.join(assembly.chains)}" if assembly.chains else "no blocks form an arch or column here"
+        known = f"the names are {', '.join(assembly.chains)}" if assembly.chains else "no blocks form an arch or column here"
         raise Refused(f"chain: '{name}' does not exist; {known}", ("analysis", "chain"))
     return name or next(iter(assembly.chains), None)
 

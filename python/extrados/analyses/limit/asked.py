@@ -210,7 +210,7 @@ def _contacts_of(assembly: SolidAssembly, table: Section, key: Key) -> tuple[np.
                 wanted.add(assembly.joint_names.index(name))
             else:
                 known = ", ".join([*assembly.groups, "ground", *assembly.joint_names[:6]])
-                raise Refused(f"section '{table.name}': no contact has the name '{name}'; there are {known}, ...", (*key, "joints"))
+                raise Refused(f"section '{table.name}': no contact has the name '{name}'; the names are {known}, ...", (*key, "joints"))
         contacts = np.array(sorted(wanted), dtype=int)
         height = np.append(assembly.centroid[:, 2], -np.inf)  # the ground is below
         return contacts, height[a[contacts]] >= height[b[contacts]]

@@ -207,7 +207,7 @@ def load_arrays(assembly: Assembly, loads: Sequence[AppliedLoad]) -> dict[str, A
             "m",
             "points at which the constant loads act; a distributed load is divided into pieces",
         ),
-        "load_force": Array(np.array(force), ("load_piece", "axis"), "N", "forces at these points, horizontal (to +x) and upward"),
+        "load_force": Array(np.array(force), ("load_piece", "axis"), "N", "constant load at each point, horizontal (to +x) and upward"),
         "load_number": Array(np.array(whole), ("load_piece",), "", "number of the load in the deck, counted from 0"),
     }
 
@@ -221,8 +221,10 @@ def push_arrays(assembly: Assembly, state: State) -> dict[str, Array]:
     most = push.wrench[:, 0]
     return {
         "push_point": Array(push.point, ("push", "axis"), "m", "points at which the passive pressure of the fill acts"),
-        "push_force": Array(state.mobilised[: push.count] * most, ("push",), "N", "its horizontal push, to +x"),
-        "push_most": Array(most, ("push",), "N", "greatest passive force at each point, to +x"),
+        "push_force": Array(
+            state.mobilised[: push.count] * most, ("push",), "N", "horizontal force of the passive pressure at each point, to +x"
+        ),
+        "push_most": Array(most, ("push",), "N", "greatest horizontal force of the passive pressure at each point, to +x"),
     }
 
 
@@ -250,7 +252,7 @@ def tie_arrays(building: Building, loads: Loads, states: dict[str, State]) -> di
     anchored = building.anchored()
     return {
         "tie_point": Array(anchored.point, ("tie", "tie_end", "axis"), "m", "both ends of the ties"),
-        "tie_block": Array(anchored.block, ("tie", "tie_end"), "", "numbers of the blocks at the two ends; -1 is the ground"),
+        "tie_block": Array(anchored.block, ("tie", "tie_end"), "", "numbers of the blocks at the two ends of each tie; -1 is the ground"),
         **forces,
     }
 

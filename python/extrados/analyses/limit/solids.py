@@ -176,7 +176,7 @@ def _arrays(assembly: SolidAssembly, there: Programme, pose: np.ndarray) -> dict
         "contact_point": Array(assembly.corner, ("contact_corner", "axis3"), "m", "corners of the contact polygons"),
         "contact_of": Array(assembly.corner_joint, ("contact_corner",), "", "contact of each corner"),
         "contact_normal": Array(
-            assembly.normal, ("contact", "axis3"), "", "normals of the contacts, pointing into the first of the two blocks"
+            assembly.normal, ("contact", "axis3"), "", "normals of the contacts, pointing into the first block of each contact"
         ),
         "collapse_force": Array(
             there.force,
@@ -184,7 +184,7 @@ def _arrays(assembly: SolidAssembly, there: Programme, pose: np.ndarray) -> dict
             "N",
             "compression (tension of mortar negative) and both shear forces at the corners at collapse",
         ),
-        "contact_force": Array(force, ("contact", "axis3"), "N", "force on the first of the two blocks of each contact at collapse"),
+        "contact_force": Array(force, ("contact", "axis3"), "N", "force on the first block of each contact at collapse"),
         "contact_centre": Array(centre, ("contact", "axis3"), "m", "point of application of the force: centre of the compression"),
         "velocity": Array(
             there.motion, ("block", "motion"), "m, m, m, rad, rad, rad", "mechanism: velocity of the centroid, and angular velocity"

@@ -369,7 +369,7 @@ class MovingLoad(LimitAnalysisTable):
     alpha: float = key(1.0, "adjustment or classification factor of the train", gt=0, le=10)
     lanes: int | None = key(None, "number of notional lanes that LM1 loads; default: all that fit into the width", ge=1, le=20)
     width: Length | None = key(None, "transverse width over which the load is carried; at most the depth", gt=0)
-    contact_length: Length = key(0.3, "contact length of an axle on the road, along a bridge with fill", gt=0)
+    contact_length: Length = key(0.3, "for a bridge with fill: contact length of an axle on the road, along the bridge", gt=0)
     factors: PartialFactors = key(PartialFactors(), "partial factors")
     serviceability: Serviceability | None = key(
         None,

@@ -116,17 +116,20 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
         },
         {"time": "s", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2"},
     )
-    result.files["table_motion.AT2"] = export.at2(f"{motion.name}, in the form that the table can play", played.acceleration, played.step)
+    result.files["table_motion.AT2"] = export.at2(
+        f"{motion.name}, scaled to the limits of the shake table", played.acceleration, played.step
+    )
     if r["fits"]:
         result.answer += (
-            f" {motion.name} is within the limits: it needs {100 * r['peak_displacement_m']:.3g} cm and "
+            f" {motion.name} is within the limits: the motion requires {100 * r['peak_displacement_m']:.3g} cm and "
             f"{100 * r['peak_velocity_m_s']:.3g} cm/s."
         )
         return r
     worst = max(fits, key=lambda f: max(f.stroke, f.flow, f.force))
     result.answer += (
-        f" {motion.name} exceeds the limits: it needs {100 * r['peak_displacement_m']:.3g} cm and {100 * r['peak_velocity_m_s']:.3g} "
-        f"cm/s, {max(worst.stroke, worst.flow, worst.force):.2f} times the {worst.governing}. To fit the "
+        f" {motion.name} exceeds the limits: the motion requires {100 * r['peak_displacement_m']:.3g} cm and "
+        f"{100 * r['peak_velocity_m_s']:.3g} cm/s, {max(worst.stroke, worst.flow, worst.force):.2f} times the limit of "
+        f"{worst.governing}. To fit the "
         f"motion, scale time by {chosen.time_scale:.3f} and acceleration by {chosen.amplitude:.3f}."
     )
     return r

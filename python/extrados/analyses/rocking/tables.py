@@ -176,7 +176,7 @@ class Assessment(RockingTable):
     kind: Literal["assessment"]
     considers: ClassVar = ()
     needs_motion: ClassVar = True
-    impulses: int = key(3, "number of the strongest impulses that are checked", ge=1, le=20)
+    impulses: int = key(3, "number of impulses that are checked, the strongest first", ge=1, le=20)
     min_period: Time | None = key(None, "shortest period of the impulses searched; default: 4 time steps", gt=0)
     max_period: Time = key(4.0, "longest impulse sought", gt=0)
 

@@ -211,8 +211,8 @@ def run_curves(
     """
     if model.slides and (options.solution == "incremental" or options.without_equilibrium not in ("continue", "load-unload")):
         raise Refused(
-            "neither an incremental solution nor other variants can follow joints that slide. Give the joints friction = "
-            '"no-sliding", or use events with load-unload',
+            'only solution = "events" with without_equilibrium = "continue" or "load-unload" can follow joints that slide: give '
+            'these keys, or give the joints friction = "no-sliding"',
             ("joints", "friction"),
         )
     curves = []
