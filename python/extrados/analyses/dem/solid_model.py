@@ -190,7 +190,7 @@ def refuse_stones(assembly: SolidAssembly) -> None:
                 ("structure",),
             )
     if len(assembly.fill):
-        raise Refused("fill: `dem` of solids does not include weights that rest on the blocks; remove the fill", ("structure", "fill"))
+        raise Refused("fill: `dem` of solids does not include weights that rest on the blocks: remove the fill", ("structure", "fill"))
 
 
 def solid_values(building: Building, assembly: SolidAssembly) -> ContactValues:

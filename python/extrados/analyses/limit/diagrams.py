@@ -244,7 +244,9 @@ def _weights(assembly: SolidAssembly, points: np.ndarray) -> np.ndarray:
     void = (columns.high - columns.low - columns.depth)[there] > VOID * (columns.high - columns.low)[there]
     if void.mean() > VOID:
         raise Refused(
-            "vertical lines cross voids between the blocks, but a thrust network requires a single layer of masonry", ("structure",)
+            "vertical lines cross voids between the blocks, but a thrust network requires a single layer of masonry: "
+            "use `thrust`, which analyses the blocks",
+            ("structure",),
         )
     nearest = cKDTree(points)
     share = np.bincount(nearest.query(samples[there])[1], columns.mass[there], len(points))

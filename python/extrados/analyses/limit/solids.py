@@ -187,10 +187,16 @@ def _arrays(assembly: SolidAssembly, there: Programme, pose: np.ndarray) -> dict
         "contact_force": Array(force, ("contact", "axis3"), "N", "force on the first block of each contact at collapse"),
         "contact_centre": Array(centre, ("contact", "axis3"), "m", "point of application of the force: centre of the compression"),
         "velocity": Array(
-            there.motion, ("block", "motion"), "m, m, m, rad, rad, rad", "mechanism: velocity of the centroid, and angular velocity"
+            there.motion,
+            ("block", "motion"),
+            "m, m, m, rad, rad, rad",
+            "mechanism: velocity of the centroid and angular velocity of each block",
         ),
         "mechanism_pose": Array(
-            pose, ("block", "pose"), "m, m, m, rad, rad, rad", "mechanism at a finite displacement: translation and rotation vector"
+            pose,
+            ("block", "pose"),
+            "m, m, m, rad, rad, rad",
+            "mechanism at a finite displacement: translation and rotation vector of each block",
         ),
     }
 

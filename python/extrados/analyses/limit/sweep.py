@@ -163,7 +163,9 @@ def _store(
             gamma, ("value",), "g", "collapse acceleration towards +x; 0 for a structure that cannot stand, NaN without a result"
         ),
         "mechanism": Array(number, ("value",), "", "number of the mechanism; 0 without a mechanism"),
-        "change": Array(np.array([c.value for c in r.changes]), ("change",), "", "values of the key at which the mechanism changes"),
+        "change": Array(
+            np.array([c.value for c in r.changes]), ("change",), "", "values of the key in `vary` at which the mechanism changes"
+        ),
     }
     if options.fracture:
         result.arrays["fractured"] = Array(fractured, ("value",), "g", "with the leeward buttress cracked")

@@ -105,12 +105,12 @@ class Tilt(SpatialLimit, Animated):
         source="after Orduna and Lourenco 2005",
     )
     block_size: bool | None = key(
-        None, "for solids: also calculate the capacity with blocks of half the length in each direction, and with the other bond"
+        None, "for solids: also calculate the capacity with blocks half as long, in one direction at a time, and with the other bonds"
     )
     pyramids: int | None = key(
         None,
-        "for solids: also calculate bounds with friction pyramids instead of friction cones, inscribed "
-        "and circumscribed, with this number of sides",
+        "for solids: also calculate bounds with inscribed and circumscribed friction pyramids of this number of sides, instead of "
+        "friction cones",
         ge=3,
         le=64,
     )
@@ -335,7 +335,7 @@ class Serviceability(Table):
     )
     passive_share: float = key(
         0.0,
-        "share of the passive pressure (`passive` of the fill) that acts under service loads, because their movements are small",
+        "share of the passive pressure (`passive` of the fill) that acts under service loads, which cause only small movements",
         ge=0,
         le=1,
     )
@@ -368,7 +368,7 @@ class MovingLoad(LimitAnalysisTable):
     )
     alpha: float = key(1.0, "adjustment or classification factor of the train", gt=0, le=10)
     lanes: int | None = key(None, "number of notional lanes that LM1 loads; default: all that fit into the width", ge=1, le=20)
-    width: Length | None = key(None, "transverse width over which the load is carried; at most the depth", gt=0)
+    width: Length | None = key(None, "transverse width over which the load is carried; at most the depth of the structure", gt=0)
     contact_length: Length = key(0.3, "for a bridge with fill: contact length of an axle on the road, along the bridge", gt=0)
     factors: PartialFactors = key(PartialFactors(), "partial factors")
     serviceability: Serviceability | None = key(

@@ -384,7 +384,7 @@ def run(context: Context, options: FailureDomain) -> Result:
         result.warnings.append(
             f"{handed} of {curves.codes.size} pulses were continued with rigid contacts: joints slide{friction} "
             f"in {conditions.sliding} pulses, and hinges form outside the mechanism in {conditions.hinges_elsewhere}. "
-            "At these durations the failure curves are accurate to one cell of the map."
+            "At the durations of these pulses, the failure curves are accurate to one cell of the map."
         )
         if options.at_amplitudes:
             result.warnings.append(

@@ -158,7 +158,9 @@ class FailureCurves(RockingTable):
     @model_validator(mode="after")
     def _trains(self) -> "FailureCurves":
         if self.pulse != "sine" and self.cycles != [1]:
-            raise ValueError(f"the key `cycles` is only for sine pulses; a pulse of shape '{self.pulse}' has only one cycle")
+            raise ValueError(
+                f"the key `cycles` is only for sine pulses, and a pulse of shape '{self.pulse}' has one cycle: remove `cycles`"
+            )
         if self.fits and (self.pulse != "sine" or self.cycles != [1]):
             raise ValueError(
                 'the key `fits` requires failure curves of single sines: give pulse = "sine" and cycles = [1], or remove `fits`'

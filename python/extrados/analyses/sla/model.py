@@ -425,7 +425,9 @@ def hills_of(materials: Sequence[Material], linear: np.ndarray, options: CrackOp
     if not any(criterion is not None for criterion in found):
         return None
     if options.cracking == "isotropic":
-        raise BadGeometry("`compressive_strength_parallel` requires cracks with a direction, and isotropic cracking has none")
+        raise BadGeometry(
+            "`compressive_strength_parallel` requires cracks with a direction, and isotropic cracking has none: remove this key"
+        )
     return found
 
 
@@ -466,7 +468,7 @@ def values_of(
     tension = [None if s else softening_of(m, options, float(f)) for m, s, f in zip(materials, linear, factors, strict=True)]
     beds = [None if t is None else bedding_of(m) for m, t in zip(materials, tension, strict=True)]
     if options.cracking == "isotropic" and any(bed is not None for bed in beds):
-        raise BadGeometry("`tensile_strength_parallel` requires cracks with a direction, and isotropic cracking has none")
+        raise BadGeometry("`tensile_strength_parallel` requires cracks with a direction, and isotropic cracking has none: remove this key")
     # Across its weakest direction bedded masonry has the teeth of another band, see core.Bedding
     widest = (band if reach is None else reach[:, 1]) * [1.0 if bed is None else bed.stretch()[1] for bed in beds]
     for rows, widths, energy in ((tension, widest, "fracture_energy"), (crushing, band, "crushing_energy")):
@@ -613,7 +615,7 @@ def _edge_load(mesh: Mesh, load: Load, what: str) -> np.ndarray:
         if asked is not None and (asked[0] < mesh.low[axis] - slack or asked[1] > mesh.high[axis] + slack):
             raise BadGeometry(
                 f"{what}: {letter} from {asked[0]:g} to {asked[1]:g} m extends beyond the wall ({mesh.low[axis]:g} to "
-                f"{mesh.high[axis]:g} m), so a part of the load would be lost"
+                f"{mesh.high[axis]:g} m), so a part of the load would be lost: give a range within the wall"
             )
     mine = end > begin
     if not mine.any():

@@ -139,8 +139,8 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         if event >= 1 and "event_step" in get and get["event_step"][event - 1]:
             first = int(np.argmax(get["event_step"])) + 1
             raise Refused(
-                f"resume_from: event {event} is a step of equilibrium iterations, whose damage has no teeth. The last event "
-                f"before these steps is {first - 1}",
+                f"resume_from: event {event} is a step of equilibrium iterations, whose damage has no teeth. Give at most "
+                f"event {first - 1}, the last event before these steps",
                 ("analysis", "resume_event"),
             )
         earlier = None

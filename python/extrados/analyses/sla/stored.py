@@ -129,8 +129,8 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
             "angle": ("rad", "direction of the normal of the first crack"),
             "stress_1": ("Pa", "greater principal stress"),
             "stress_2": ("Pa", "lesser principal stress"),
-            "ratio_n": ("", "remaining stiffness across the first crack"),
-            "ratio_s": ("", "remaining stiffness across the second crack"),
+            "ratio_n": ("", "ratio of remaining to initial stiffness across the first crack"),
+            "ratio_s": ("", "ratio of remaining to initial stiffness across the second crack"),
             "stress_angle": ("rad", "of stress_1"),
         }.items():
             data = np.stack([point_fields(model, s)[field] for s in states])

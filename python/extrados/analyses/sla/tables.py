@@ -378,7 +378,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         max_length=10,
     )
     seeds: list[int] = key(
-        [], "seeds of the random mesh and strength with which the analysis is repeated, for a scatter band", max_length=200
+        [], "seeds for repetitions of the analysis with other random meshes and strengths, for a scatter band", max_length=200
     )
     strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)
     strength_length: Length | None = key(None, "correlation length of the random strength; default: one element", gt=0)
@@ -392,7 +392,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         None, "results folder of an earlier run of the same wall, from which this run continues; inside the folder of the deck, or absolute"
     )
     resume_event: int | None = key(
-        None, "number of the event of the earlier run before which this run continues; default: the last event", ge=1
+        None, "number of an event of the earlier run: this run continues from the damage before that event; default: the last event", ge=1
     )
 
     @field_validator("directions")
@@ -428,7 +428,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         if len(set(self.seeds)) < len(self.seeds):
             raise ValueError("seeds: a seed occurs twice, which would give the same wall again")
         if self.shear_retention is not None and self.cracking == "isotropic":
-            raise ValueError("isotropic cracking has no shear retention")
+            raise ValueError("isotropic cracking has no shear retention: remove `shear_retention`")
         if self.solution == "incremental" and (self.without_equilibrium not in ("continue", "load-unload") or self.states or self.budget):
             raise ValueError("an incremental solution has no events: remove `without_equilibrium`, `states` and `budget`")
         if self.verification.model_fields_set and not self.by_inertia:
