@@ -75,7 +75,7 @@ def test_similar_blocks_fall_on_one_curve(tmp_path: Path) -> None:
 
 def test_refusals(tmp_path: Path) -> None:
     assert "deck.toml:12: analysis.variants: variant 1: height: " in refused(tmp_path, "variants = [{ height = -1.0 }]")
-    assert "not its kind" in refused(tmp_path, 'variants = [{ kind = "arch" }]')
+    assert "not the kind of the structure" in refused(tmp_path, 'variants = [{ kind = "arch" }]')
     assert "breadth: unknown key" in refused(tmp_path, "variants = [{ breadth = 1.0 }]")
     for options, text in (
         ('pulse = "step"\ncycles = [2]', "has one cycle"),

@@ -254,7 +254,7 @@ def refuse_still(building: Building, options: MovingSupports) -> None:
     if building.initial.movements:
         movements_of(building)
     elif options.spread == 0.0 and options.settle == 0.0:
-        raise Refused("with `spread` = 0 and `settle` = 0, no support moves", ("analysis",))
+        raise Refused("with `spread` = 0 and `settle` = 0, no support moves: give one of them another value", ("analysis",))
 
 
 def movements_of(building: Building) -> np.ndarray:

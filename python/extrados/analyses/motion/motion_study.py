@@ -46,7 +46,10 @@ def _periods(options: MotionStudy, step: float) -> np.ndarray:
     """Of a spectrum [s]; Refused where the time step is too long for those that are asked for or of a measure."""
     shortest = core.POINTS_PER_CYCLE * step / 4096.0
     if shortest > (needed := min(options.longest, HOUSNER_BAND[0])):
-        raise Refused(f"a time step of {step:.3g} s is too long for the spectrum, which requires the period of {needed:g} s", ("motion",))
+        raise Refused(
+            f"a time step of {step:.3g} s is too long for the spectrum, which must include the period of {needed:g} s: use shorter steps",
+            ("motion",),
+        )
     return np.geomspace(max(options.shortest, shortest), options.longest, options.periods)
 
 

@@ -20,8 +20,8 @@ def hand_over_cells() -> Any:
     """Key of analyses that draw a map."""
     return key(
         100,
-        "if joints slide or hinges form outside the mechanism in at most this number of cells of the map, "
-        "these cells are continued with rigid contacts; if there are more, none is continued. 0: never",
+        "cells of the map in which joints slide or hinges form outside the mechanism are continued with rigid contacts, if there are at "
+        "most this number of such cells; otherwise none is continued. 0: never",
         ge=0,
         le=1_000_000,
         source="Moreau 1988",
@@ -168,7 +168,7 @@ class FailureCurves(RockingTable):
         if len(set(self.cycles)) < len(self.cycles):
             raise ValueError("cycles holds a number twice")
         if max(1, len(self.variants)) * len(self.cycles) > 24:
-            raise ValueError("variants times cycles give more than 24 curves, the greatest number that a figure can show")
+            raise ValueError("variants times cycles give more than 24 curves, the most that a figure can show: give fewer")
         return self
 
 

@@ -241,7 +241,7 @@ def _freedoms(mesh: Mesh, held: set[tuple[int, int]], moved: Load | None) -> tup
         for part in moved.parts:
             common += [(int(n), AXES[moved.direction], part.ratio) for n in mesh.nodes_at(part, "displacement")]
         if all(share == 0.0 for _, _, share in common):
-            raise BadGeometry("displacement: every `ratio` is 0, so nothing moves")
+            raise BadGeometry("displacement: every `ratio` is 0, so nothing moves: give a `ratio` other than 0")
         if len({n for n, _, _ in common}) < len(common):
             raise BadGeometry("two parts of the displacement have a node in common: give places that do not overlap")
         ties.append(common)
@@ -249,14 +249,15 @@ def _freedoms(mesh: Mesh, held: set[tuple[int, int]], moved: Load | None) -> tup
     if clash := held & tied:
         node, direction = min(clash)
         raise BadGeometry(
-            f"node {node + 1} at x {mesh.xy[node, 0]:g} m, y {mesh.xy[node, 1]:g} m is both restrained and tied in {'xy'[direction]}"
+            f"node {node + 1} at x {mesh.xy[node, 0]:g} m, y {mesh.xy[node, 1]:g} m is both restrained and tied "
+            f"in {'xy'[direction]}: remove one of the two"
         )
     try:
         freedoms = core.Freedoms.make(len(mesh.xy), sorted(held), ties)
     except ValueError as error:
         raise BadGeometry(str(error)) from None
     if not (freedoms.equation >= 0).any():
-        raise BadGeometry("every node is restrained, so nothing can move")
+        raise BadGeometry("every node is restrained, so nothing can move: remove supports")
     return freedoms, common
 
 

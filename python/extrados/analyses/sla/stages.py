@@ -76,7 +76,7 @@ class Supports:
         number = np.full(self.count, -1)
         free = np.flatnonzero(~fixed)
         if not len(free):
-            raise BadGeometry("every node is restrained, so nothing can move")
+            raise BadGeometry("every node is restrained, so nothing can move: remove supports")
         number[free] = np.arange(len(free))
         number[moved] = len(free) + np.arange(len(moved))
         return core.Freedoms(number[self.equation], self.factor, len(moved))
@@ -92,7 +92,7 @@ class Supports:
                 raise BadGeometry(f"{what}: two parts of the displacement move the same node, or nodes that are tied together")
             rate[at] = by
         if not np.nan_to_num(rate).any():
-            raise BadGeometry(f"{what}: every `ratio` is 0, so nothing moves")
+            raise BadGeometry(f"{what}: every `ratio` is 0, so nothing moves: give a `ratio` other than 0")
         return rate
 
 

@@ -180,7 +180,7 @@ class CrackOptions(Table):
     )
     ripple: float = key(
         0.05,
-        "half-width of the teeth as a ratio p of the strength; the load is overestimated by up to about p/2. The thesis uses 0.1 and 0.2",
+        "half-width p of the teeth, divided by the strength; the load is overestimated by up to about p/2. The thesis uses 0.1 and 0.2",
         source="thesis 4.2",
         ge=0.005,
         le=0.5,
