@@ -368,7 +368,9 @@ def _worst_arrays(assembly: Assembly, job: Places, k: int, worst: Collapse, heav
         "even_load": Array(_standing(job, k, worst), ("stretch", "end"), "m", "uniform loads at the governing position"),
         "collapse_point": Array(state.points(assembly), ("joint", "axis"), "m", "thrust line at collapse, at the governing position"),
         **line_arrays("collapse", thrust_paths(heavier, worst.loads, state, sway=0.0), "at collapse, worst place"),
-        "mechanism_pose": Array(finite_motion(assembly, worst.mechanism), ("block", "component"), "m, m, rad", "the mechanism carried on"),
+        "mechanism_pose": Array(
+            finite_motion(assembly, worst.mechanism), ("block", "component"), "m, m, rad", "mechanism at a finite displacement"
+        ),
         "chain_joint": Array(
             np.concatenate([np.array(j, dtype=int) for j in chains] or [np.empty(0, dtype=int)]),
             ("link",),
