@@ -289,7 +289,7 @@ WRONG = {
     "mortar of a section": ("only for blocks in space", ARCH + "[joints]\ncohesion = 1e4\n" + TILT + 'mortar = "ductile" # here\n'),
     "floors of an arch": ("has no floors", ARCH + PUSH + '[[analysis.variants]]\nname = "stiff"\nfloors = 2.0 # here\n'),
     "springs under rigid contacts": (
-        "have no springs",
+        "cannot follow a compliant base",
         ARCH + PULSE + "[supports]\nstiffness = 1e9 # here\n" + DEM + 'solver = "nonsmooth"\n',
     ),
     "first swings of solids": (

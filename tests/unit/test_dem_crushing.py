@@ -53,9 +53,9 @@ def test_a_great_strength_changes_nothing_and_the_ledger_closes() -> None:
 @pytest.mark.parametrize(
     ("of_dem", "more", "why"),
     [
-        ("crushing = true", "", "requires a compressive_strength"),
+        ("crushing = true", "", "requires `compressive_strength`"),
         ("crushing = true\ndirection = 0.0", '[material]\ncompressive_strength = "4 MPa"\n', "cannot include crushing of corners"),
-        ("crushing = true", '[material]\ncompressive_strength = "4 MPa"\n[joints]\ncohesion = "0.1 MPa"\n', "mortar do not crush"),
+        ("crushing = true", '[material]\ncompressive_strength = "4 MPa"\n[joints]\ncohesion = "0.1 MPa"\n', "for joints without mortar"),
     ],
 )
 def test_crushing_is_refused_by_name(of_dem: str, more: str, why: str) -> None:

@@ -102,8 +102,8 @@ def test_solids_end_as_their_section(tmp_path) -> None:
     ("more", "words"),
     [
         ("uncertain = { stiffness = 0.2 }", "no springs"),
-        ("uncertain = { radius = 0.2 }", "no such value"),
-        ("uncertain = { imperfection = 0.02 }\ndirection = 0.0", "not in one plane"),
+        ("uncertain = { radius = 0.2 }", "no uncertain value"),
+        ("uncertain = { imperfection = 0.02 }\ndirection = 0.0", "would not be plane"),
         ("intensity = 'sa'", "requires sa_period"),
         ("intensity = 'size'\nhazard = { intensities = [1, 2], annual_rates = [0.1, 0.01] }", "hazard"),
     ],

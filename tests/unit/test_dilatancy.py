@@ -146,7 +146,7 @@ def test_solids_are_labelled() -> None:
     """In space a wall that slides has an upper bound, a design value by load paths and a least state (test_load_path)."""
     sliding, turning = (run(s, f, kind="tilt", direction=0.0, rose=4) for s, f in ((WALL, 0.65), (ARCH, 0.7)))
     assert sliding.results.dilating_contacts and DILATANT in sliding.answer
-    assert sliding.results.non_dilatant is None and "so this state is calculated only with" in sliding.results.non_associated_reason, (
+    assert sliding.results.non_dilatant is None and "without dilatancy is calculated only with" in sliding.results.non_associated_reason, (
         "contacts are many"
     )
     assert sliding.results.judged(asked(0.1)).outcome == "open", "an upper bound alone"

@@ -75,10 +75,10 @@ def test_similar_blocks_fall_on_one_curve(tmp_path: Path) -> None:
 
 def test_refusals(tmp_path: Path) -> None:
     assert "deck.toml:12: analysis.variants: variant 1: height: " in refused(tmp_path, "variants = [{ height = -1.0 }]")
-    assert "not its kind" in refused(tmp_path, 'variants = [{ kind = "arch" }]')
+    assert "not the kind of the structure" in refused(tmp_path, 'variants = [{ kind = "arch" }]')
     assert "breadth: unknown key" in refused(tmp_path, "variants = [{ breadth = 1.0 }]")
     for options, text in (
-        ('pulse = "step"\ncycles = [2]', "has only one cycle"),
+        ('pulse = "step"\ncycles = [2]', "has one cycle"),
         ("cycles = [2, 2]", "twice"),
         ("variants = [{ width = 0.4 }, { width = 0.5 }, { width = 0.6 }]\ncycles = [1, 2, 3, 4, 5, 6, 7, 8, 9]", "24 curves"),
     ):

@@ -137,7 +137,7 @@ def test_the_rule_of_a_deck_of_solids_gives_the_least_state() -> None:
 def test_large_structures_are_followed_on_request(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(driver, "MOST_BESIDE", 10)
     r = run(coursed(2), direction=0.0, rose=4).results
-    assert r.non_dilatant is None and "so this state is calculated only with" in r.non_associated_reason
+    assert r.non_dilatant is None and "so collapse without dilatancy is calculated only with" in r.non_associated_reason
     assert r.judged(asked(0.1)).outcome == "open"
 
 

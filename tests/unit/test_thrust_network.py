@@ -171,7 +171,7 @@ def _results(**keys) -> ThrustNetwork:
         (None, None, "No upper limit of the horizontal load was found"),
         (0.0, 1e-9, "networks on this form diagram carry no horizontal load"),
         (None, 0.0, "networks on this form diagram carry no horizontal load"),
-        (0.2, 0.3, "0.2 (bound of the diagram: 0.3) times the weight, if the load acts at the nodes"),
+        (0.2, 0.3, "0.2 (bound for this form diagram: 0.3) times the weight, if the load acts at the nodes"),
     ],
 )
 def test_words_of_the_horizontal_load(load, bound, words) -> None:
@@ -186,7 +186,7 @@ def test_horizontal_load_of_a_network_is_above_that_of_tilt() -> None:
     )
     network, tilt = (run.analyses[k]["results"] for k in range(2))
     assert 1.0 < network["horizontal_load_g"] / tilt["collapse_acceleration_g"] < 1.08
-    assert "exceeds that of `tilt` by 1 to 7 %" in run.analyses[0]["answer"]
+    assert "1 to 7 % above the collapse acceleration by `tilt`" in run.analyses[0]["answer"]
 
 
 def test_networks_that_leave_the_blocks_are_named() -> None:

@@ -200,7 +200,7 @@ def _found(context: Context, options: DemDomain, model: Model | SolidModel, vari
     if checked is not None:
         numbers["cross_check"] = _agreement(checked, amplitudes, durations)
         result.arrays |= {
-            "duration": Array(durations, ("duration",), "s", "durations of the cells of the map that both solvers calculated"),
+            "duration": Array(durations, ("duration",), "s", "durations for which both solvers calculated the map"),
             "fails": Array(
                 checked,
                 ("solver", "amplitude", "duration"),
@@ -263,8 +263,9 @@ def _apart(check: out.CrossCheck) -> str:
     """Where the two solvers do not agree, in words."""
     where = "; ".join(
         (
-            f"a pulse of {c.amplitude_g:.3g} g and {c.duration_s:.3g} s {('collapses' if c.fails_as_given else 'stands')} by the solver "
-            f"of the deck, and {('collapses' if c.fails_by_the_other else 'stands')} by the other solver"
+            f"under a pulse of {c.amplitude_g:.3g} g and {c.duration_s:.3g} s "
+            f"the structure {('collapses' if c.fails_as_given else 'stands')} with the solver of the deck, "
+            f"and {('collapses' if c.fails_by_the_other else 'stands')} with the other solver"
         )
         for c in check.apart[:8]
     )
@@ -358,7 +359,7 @@ def _answer(r: out.DemDomain, amplitudes: np.ndarray, shortest: np.ndarray) -> s
         with np.errstate(invalid="ignore"):
             worst = max(spread, key=lambda item: np.nanmax(np.abs(item[1] / shortest - 1.0), initial=0.0))
         change = np.nanmax(np.abs(worst[1] / shortest - 1.0), initial=0.0)
-        text += f" The greatest change of these durations is {100 * change:.0f} %, with {worst[0]}."
+        text += f" The varied parameters change these durations by up to {100 * change:.0f} % ({worst[0]})."
     if r.cross_check is not None:
         other = [f"{t:.3f}" if t is not None else "none" for t in r.curves[-1].shortest_durations_s]
         text += (

@@ -49,8 +49,9 @@ def run(context: Context, options: DemParameters) -> Result:
     result.answer = (
         f"The joint stiffness is {engineering(v.stiffness.min(), 'Pa/m')} to {engineering(v.stiffness.max(), 'Pa/m')}. The greatest "
         f"impact frequencies are {v.impact.rotation.max():.4g} (rotation), {v.impact.corner.max():.4g} (corner) and "
-        f"{v.impact.edge.max():.4g} rad/s (edge). With beta = {v.beta:.4g} s, the damping is {100 * ratios['rotation']:.3g} %, "
-        f"{100 * ratios['corner']:.3g} % and {100 * ratios['edge']:.3g} % of critical (least of all joints). Advice: use at least 10 % "
-        f"at rotational and 25 % at edge impact. Start from 100 % at edge impact (beta = {constants['edge']:.4g} s), and vary beta."
+        f"{v.impact.edge.max():.4g} rad/s (edge). With beta = {v.beta:.4g} s, the least damping of all joints is "
+        f"{100 * ratios['rotation']:.3g} % (rotation), {100 * ratios['corner']:.3g} % (corner) and {100 * ratios['edge']:.3g} % (edge) of "
+        "critical. Advice: use at least 10 % at rotational and 25 % at edge impact. "
+        f"Start from 100 % at edge impact (beta = {constants['edge']:.4g} s), and vary beta."
     )
     return result

@@ -113,11 +113,13 @@ def force_arrays(model: Model | SolidModel, run: dem_run.FoundRun) -> dict[str, 
     axis = f"axis{run.joint_force.shape[2]}"
     return {
         "pair_name": Array(np.array(pair_names(model, run), dtype=object), ("pair",), "", "names of the pairs"),
-        "pair_block": Array(blocks, ("pair", "side"), "", "numbers of the two blocks that touch initially; -1 is the ground"),
-        "pair_force": Array(run.joint_force, ("time", "pair", axis), "N", "contact force on the first of the two blocks of each pair"),
-        "pair_friction_work": Array(run.joint_friction, ("time", "pair"), "J", "energy lost by friction up to this time"),
+        "pair_block": Array(
+            blocks, ("pair", "side"), "", "numbers of the two blocks of each pair in contact at the start; -1 is the ground"
+        ),
+        "pair_force": Array(run.joint_force, ("time", "pair", axis), "N", "contact force on the first block of each pair"),
+        "pair_friction_work": Array(run.joint_friction, ("time", "pair"), "J", "energy lost by friction since the start"),
         "pair_damping_work": Array(
-            run.joint_damping, ("time", "pair"), "J", "energy lost in dashpots, or by impacts of rigid contacts, up to this time"
+            run.joint_damping, ("time", "pair"), "J", "energy lost in dashpots, or by impacts of rigid contacts, since the start"
         ),
         "reaction": Array(
             reactions(model, run),

@@ -228,9 +228,11 @@ def _describe(context: Context, options: DemFragility, job: Ensemble, swept: Swe
     if options.intensity == "size":
         result.answer = _spoken_sizes(result.results, word)
     result.arrays |= {
-        "stripe_bound_low": Array(bounds[:, 0], ("stripe",), "", "share of collapse if no censored run ends with collapse"),
-        "stripe_bound_high": Array(bounds[:, 1], ("stripe",), "", "share of collapse if all censored runs end with collapse"),
-        "outcome": Array(swept["outcome"], ("member",), "", "outcome: -1 failed or censored, 0 at rest or slid, 1 rocked, 2 collapse"),
+        "stripe_bound_low": Array(bounds[:, 0], ("stripe",), "", "share of collapse if runs whose blocks still move count as standing"),
+        "stripe_bound_high": Array(bounds[:, 1], ("stripe",), "", "share of collapse if runs whose blocks still move count as collapsed"),
+        "outcome": Array(
+            swept["outcome"], ("member",), "", "outcome: -1 no result or still moving, 0 at rest or slid, 1 rocked, 2 collapse"
+        ),
         "displacement_ratio": Array(swept["peak_ratio"], ("member",), "", RATIO),
         "pga": Array(swept["pga"] / GRAVITY, ("member",), "g"),
     }
@@ -240,9 +242,11 @@ def _describe(context: Context, options: DemFragility, job: Ensemble, swept: Swe
 
 def _spoken_sizes(r: out.DemFragility, word: str) -> str:
     shares = "; ".join(
-        f"{level:g} times: {100 * share:.3g} %" for level, share in zip(r.levels, r.collapse_probability, strict=True) if share is not None
+        f"{100 * share:.3g} % for all lengths times {level:g}"
+        for level, share in zip(r.levels, r.collapse_probability, strict=True)
+        if share is not None
     )
-    return f"Share of {r.motions} motion{'s' if r.motions > 1 else ''} that cause collapse of the {word}, by the factor of its lengths: {shares}."
+    return f"Share of {r.motions} motion{'s' if r.motions > 1 else ''} that cause collapse of the {word}: {shares}."
 
 
 def _tell(source: Source, swept: Swept, levels: int, unstable: int, result: Result) -> None:
@@ -251,7 +255,7 @@ def _tell(source: Source, swept: Swept, levels: int, unstable: int, result: Resu
     if censored.any():
         result.warnings.append(
             f"Blocks still move at the end of {int(censored.sum())} of {len(censored)} runs. These runs have no outcome; "
-            "`collapse_probability_bounds` counts them as standing and as collapsed. Give a longer `settle`."
+            "`collapse_probability_bounds` counts them once as standing and once as collapsed. Give a longer `settle`."
         )
     if lost.any():
         first = int(np.flatnonzero(lost)[0])

@@ -126,14 +126,17 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
         ),
         "rate": Array(measures.block_rates(model, found), ("time", "block", "component"), "m/s, m/s, rad/s"),
         "rotation": Array(
-            seen.rotation, ("time", "block"), "rad", "displacements from the position at rest under self-weight; positive towards +x"
+            seen.rotation,
+            ("time", "block"),
+            "rad",
+            "rotation of each block from its position at rest under self-weight; positive towards +x",
         ),
         "tracked": Array(np.array(tracked), ("tracked",), "", "blocks whose rotation is reported"),
         "hinge": Array(
             seen.state,
             ("time", "joint"),
             "",
-            "0 closed, -1 hinge at the first end (intrados of an arch), 1 hinge at the second end (extrados), 2 open",
+            "state of each joint: 0 closed, -1 hinge at the first end (intrados of an arch), 1 hinge at the second end (extrados), 2 open",
         ),
         "opening_p": Array(seen.gap_p, ("time", "joint"), "m", "gap at the first ends of the joints (intrados of an arch)"),
         "opening_q": Array(seen.gap_q, ("time", "joint"), "m", "gap at the second ends of the joints (extrados of an arch)"),

@@ -111,8 +111,8 @@ def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end
     )
     raise {"unsettled": Falls, "restless": Restless}.get(run.reason, Refused)(
         {
-            "step": f"the time step exceeds the critical time step of {run.critical_step:.3g} s",
-            "overlap": f"{' and '.join(names)} overlap at the start",
+            "step": f"the time step exceeds the critical time step of {run.critical_step:.3g} s: give a smaller `time_step`",
+            "overlap": f"{' and '.join(names)} overlap at the start: correct the geometry",
             "unsettled": f"the structure does not stand under its own weight: {first} falls",
             "restless": f"the structure does not come to rest under its own weight in {run.settling_steps} steps ({first} moves most), so "
             f"discrete elements do not show whether it stands{wedged}",
@@ -170,8 +170,8 @@ def doubts_of_rigid_mortar(values: ContactValues) -> list[str]:
         return []
     return [
         *_doubts_of_tension(values),
-        "with rigid contacts mortar holds as long as any forces in equilibrium within its strength exist, as in limit analysis. Where "
-        "several joints, or both ends of a joint, share a force, brittle mortar may fail earlier: compare with springs",
+        "with rigid contacts, as in limit analysis, mortar holds if its strength allows any equilibrium. Brittle mortar may fail earlier "
+        "where several joints, or both ends of a joint, share a force: compare with springs",
     ]
 
 

@@ -100,19 +100,22 @@ def _refuse_bars(building: Building) -> None:
 def _refuse_springs(building: Building) -> None:
     """Refused where rigid contacts are asked for what only springs have."""
     if building.supports.stiffness is not None:
-        raise Refused('rigid contacts (solver = "nonsmooth", or `cross_check`) have no springs', ("supports", "stiffness"))
+        text = 'rigid contacts (solver = "nonsmooth", or `cross_check`) cannot follow a compliant base: remove `stiffness`'
+        raise Refused(text, ("supports", "stiffness"))
 
 
 def _refuse_crushing(building: Building, rigid: bool) -> None:
     """Refused where corners are to crush without a strength, on rigid contacts, or at joints with mortar."""
     key = ("analysis", "crushing")
     if building.material.compressive_strength is None:
-        raise Refused("crushing of corners requires a compressive_strength of the [material]", key)
+        raise Refused("crushing of corners requires `compressive_strength` of [material]", key)
     if rigid:
-        raise Refused("crushing of corners requires springs: omit cross_check", key)
+        raise Refused("crushing of corners requires springs, but `cross_check` also uses rigid contacts: remove `cross_check`", key)
     for name in ("cohesion", "tension"):
         if np.nanmax(building.joint_property(name), initial=0.0) > 0.0:
-            raise Refused("joints with mortar do not crush: remove cohesion and tension, or omit crushing", ("joints", name))
+            raise Refused(
+                "`crushing` is only for joints without mortar: remove `cohesion` and `tension`, or remove `crushing`", ("joints", name)
+            )
 
 
 def _refuse_restitution(building: Building) -> None:

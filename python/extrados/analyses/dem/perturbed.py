@@ -78,6 +78,6 @@ def probe_chaos(
             turns = turning(outcome, [ends[factor] for factor in perturbed()])
     except Unfinished as error:
         result.status = "interrupted" if error.interrupted else "failed"
-        result.reason = f"the run under the perturbed motion failed: {error}; the run before it is complete"
+        result.reason = f"the run under the given motion is complete, but the run under the perturbed motion failed: {error}"
         return unknown
     return chaos_of(ends[FACTOR], most, turns)

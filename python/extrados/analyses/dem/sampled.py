@@ -128,11 +128,11 @@ def refuse_uncertain(building: Building, options: DemFragility) -> None:
     for name in options.uncertain:
         key = ("analysis", "uncertain", name)
         if name == "imperfection" and not section:
-            raise Refused("moved corners of solids are not in one plane: vary the lengths of [structure] instead", key)
+            raise Refused("faces of solids with moved corners would not be plane: vary the lengths of [structure] instead", key)
         if name in SPRINGS and options.rigid:
             raise Refused('rigid contacts have no springs: remove this value, or give solver = "compliant"', key)
         if name not in known:
-            raise Refused(f"this {structure.word} has no such value; its values are {', '.join(known)}", key)
+            raise Refused(f"this {structure.word} has no uncertain value '{name}'; expected one of {', '.join(known)}", key)
     joints = building.joints
     if "friction" in options.uncertain and (joints.coefficient is None or any(t.friction is not None for t in joints.types)):
         raise Refused(
@@ -142,7 +142,8 @@ def refuse_uncertain(building: Building, options: DemFragility) -> None:
     if options.intensity == "size":
         if getattr(structure, "file", None) is not None:
             raise Refused(
-                "blocks of a file have one size: use another intensity, or give the blocks in the deck", ("analysis", "intensity")
+                "the size of blocks from a file cannot vary: use another intensity, or give the blocks in the deck",
+                ("analysis", "intensity"),
             )
         if building.restraints:
             raise Refused(

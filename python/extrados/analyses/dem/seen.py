@@ -161,7 +161,9 @@ def doubts_of_run(model: Model | SolidModel, found: dem_run.FoundRun, violated: 
     """Warnings of any run: its energy balance, its convergence, conditions that do not hold, an end before rest."""
     doubts = []
     if found.residual > 0.01:
-        doubts.append(f"the error of the energy balance is {100 * found.residual:.2g} % of the total energy exchanged")
+        doubts.append(
+            f"the error of the energy balance is {100 * found.residual:.2g} % of the total energy exchanged. Try a smaller time step"
+        )
     doubts += [*dem_model.unconverged(found.effort), *violated]
     if elsewhere := carried_elsewhere(model, found):
         more = f" and {len(elsewhere) - SHOWN} more blocks" if len(elsewhere) > SHOWN else ""

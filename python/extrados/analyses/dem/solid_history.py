@@ -134,9 +134,11 @@ def run_arrays(model: SolidModel, run: dem3.Run, shown: np.ndarray) -> dict[str,
 def contact_arrays(opening: np.ndarray, slip: np.ndarray, state: np.ndarray) -> dict[str, Array]:
     """What the contacts do over time; see SolidsSeen."""
     return {
-        "state": Array(state.astype(np.int8), ("time", "contact"), "", "0 closed, 1 open at some corners, 2 fully open"),
+        "state": Array(
+            state.astype(np.int8), ("time", "contact"), "", "state of each contact: 0 closed, 1 open at some corners, 2 fully open"
+        ),
         "opening": Array(opening, ("time", "contact"), "m", "greatest gap of each contact, over its corners"),
-        "slip": Array(slip, ("time", "contact"), "m", "slip of each contact, at the corner that is most closed"),
+        "slip": Array(slip, ("time", "contact"), "m", "slip of each contact, at its corner with the smallest gap"),
     }
 
 

@@ -134,7 +134,7 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         ('merge = "three-bars"', options.merge != "none", ("analysis", "merge")),
         *((key, key in given, ("analysis", key)) for key in ("vary_damping", "vary_stiffness", "vary_friction")),
         (
-            "[[initial.movements]] in a tilt test or in a map of pulses (dem-domain), or in dem-fragility",
+            '[[initial.movements]], except with kind = "dem" and test = "motion"',
             bool(building.initial.movements) and not moves,
             ("initial", "movements"),
         ),
@@ -157,7 +157,7 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         asked.append(("mode_II", options.mode_II, ("analysis", "mode_II")))
     if not options.rigid or (isinstance(options, DemDomain) and options.cross_check):  # something asks how springs are
         asked += [
-            ('stiffness_rule = "thesis" is only for plane sections', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
+            ('stiffness_rule = "thesis" (only for plane sections)', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
             ('damping = "restitution"', joints.damping == "restitution" and joints.beta is None, ("joints", "damping")),
         ]
     return [(f"dem of solids cannot include {what}: remove it", key) for what, there, key in asked if there]
@@ -175,8 +175,7 @@ def refuse_shoves(building: Building, assembly: SolidAssembly) -> None:
     for k, one in enumerate(building.initial.movements):
         if one.dy:
             raise Refused(
-                "`dy` moves a support of this section sideways (in space, y is across its depth): give `dz` for "
-                "a settlement (z is upward in space)",
+                "for solids, `dy` moves a support perpendicular to the plane of this section: give `dz` for a settlement (z is upward)",
                 ("initial", "movements", k, "dy"),
             )
 
@@ -191,7 +190,7 @@ def refuse_stones(assembly: SolidAssembly) -> None:
                 ("structure",),
             )
     if len(assembly.fill):
-        raise Refused("fill: `dem` of solids does not include weights that rest on the blocks; remove the fill", ("structure", "fill"))
+        raise Refused("fill: `dem` of solids does not include weights that rest on the blocks: remove the fill", ("structure", "fill"))
 
 
 def solid_values(building: Building, assembly: SolidAssembly) -> ContactValues:

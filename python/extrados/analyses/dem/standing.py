@@ -73,7 +73,10 @@ def _contradiction(building: Building, proof_of: Callable[[Building], CannotStan
         return ""
     if proof is None:
         return ""
-    return f"discrete elements stand {_held(building, proof_of)}, but limit analysis finds collapse under self-weight: {proof}"
+    return (
+        f"with discrete elements the structure stands {_held(building, proof_of)}, but limit analysis finds collapse under "
+        f"self-weight: {proof}"
+    )
 
 
 def left_out(model: Model | SolidModel) -> str:

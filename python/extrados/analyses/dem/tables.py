@@ -92,7 +92,7 @@ class DemTable(BuildingAnalysis):
     )
     mass_damping: float = key(0.0, "mass-proportional damping alpha in 1/s; not physical for rocking blocks", ge=0, le=1e4)
     merge: Literal["none", "three-bars"] = key(
-        "none", "three-bars: the voussoirs of an arch are joined to the three rigid bars of its four-hinge mechanism"
+        "none", "three-bars: the voussoirs of an arch are merged into the three rigid bars of its four-hinge mechanism"
     )
     fraction: float | None = key(
         None, "time step, as a fraction of the critical time step. Default: 0.3 in the plane, 0.5 in space", gt=0, le=0.9
@@ -233,7 +233,7 @@ class Dem(SpatialDem, Animated):
                 'rigid contacts do not determine the place of a force in a joint: give solver = "compliant", or remove `thrust`'
             )
         if self.thrust and self.crushing:
-            raise ValueError("the key `thrust` gives the pressure of elastic springs: remove `thrust` or `crushing`")
+            raise ValueError("the key `thrust` assumes elastic springs, which do not crush: remove `thrust` or `crushing`")
         return self
 
     @property
@@ -307,7 +307,7 @@ class DemFragility(SpatialDem):
     starter: ClassVar = {"count": "4", "levels": '["0.3 g", "0.6 g"]'}
     count: int | None = key(None, "number of motions; default: 100, or the whole set", ge=1, le=1_000_000)
     seed: int | None = key(
-        None, "seed of the random numbers: replaces that of a generated set, and also draws the uncertain values", ge=0, le=2**62
+        None, "seed of the random numbers, for the uncertain values and for a generated set, whose own seed it replaces", ge=0, le=2**62
     )
     intensity: Literal["pga", "sa", "arias", "scale", "size"] = key(
         "pga",
@@ -329,7 +329,7 @@ class DemFragility(SpatialDem):
     settle: Time | None = key(
         None, "time after the motion in which the blocks must come to rest or collapse; default: 15 times the root of size / g", ge=0
     )
-    output_step: Time = key(0.01, "spacing of the times at which openings, slips and displacements are read", ge=1e-6)
+    output_step: Time = key(0.01, "interval at which openings, slips and displacements are recorded", ge=1e-6)
     collapse_displacement: Length | None = key(
         None,
         "displacement of a block that counts as collapse, if the block also rotates or loses height; default: 1/5 of the "

@@ -40,13 +40,13 @@ class Thrust:
         at = ("time", joint, "joint_end") if axes == 2 else ("time", "corner")
         where = "first and second end of each joint" if axes == 2 else "corners of the contacts, contact by contact"
         return {
-            "thrust_force": Array(self.force, ("time", joint, axis), "N", "contact force on the first of the two blocks of each contact"),
+            "thrust_force": Array(self.force, ("time", joint, axis), "N", "contact force on the first block of each contact"),
             "thrust_place": Array(self.place, ("time", joint, axis), "m", "centre of pressure of each contact; NaN without a force"),
             "edge_stress": Array(
                 self.stress,
                 at,
                 "Pa",
-                f"compressive stress at the {where}: linear pressure without tension; infinite where an edge or a corner alone carries",
+                f"compressive stress at the {where}, linear and without tension; infinite where a single edge or corner carries the force",
             ),
         }
 
@@ -71,7 +71,7 @@ def put_thrust(options: Dem, model: Model | SolidModel, run: dem.Run | dem3.Run,
     if not options.thrust:
         return {}
     if np.nanmax(model.values.tension, initial=0.0) > 0.0:
-        result.warnings.append("the stresses at the edges of joints and the places of their forces neglect the tension of the mortar")
+        result.warnings.append("the key `thrust` neglects the tension of mortar, in stresses as well as in the places of forces")
     found = thrust_of(model, run)
     result.arrays |= found.arrays()
     return {"edge_stress_at_rest_Pa": found.at_rest}

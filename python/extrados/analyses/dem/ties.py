@@ -147,7 +147,7 @@ def segment_arrays(ties: ElementTies, axes: int) -> dict[str, Array]:
             np.array([[strand.blocks[i][0] for i in k] for strand, k in ends]),
             (one, "tie_end"),
             "",
-            "numbers of the blocks at the two ends; -1 is the ground",
+            "numbers of the blocks at the two ends of each tie or damper; -1 is the ground",
         ),
         "tie_point": Array(
             np.array([strand.point[list(k), :axes] for strand, k in ends]), (one, "tie_end", axis), "m", "both ends as drawn"

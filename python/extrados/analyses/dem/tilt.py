@@ -90,7 +90,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
             state,
             ("time", "joint"),
             "",
-            "0 closed, -1 hinge at the first end (intrados of an arch), 1 hinge at the second end (extrados), 2 open",
+            "state of each joint: 0 closed, -1 hinge at the first end (intrados of an arch), 1 hinge at the second end (extrados), 2 open",
         ),
         "snapshot_time": Array(last.time[[at, -1]], ("snapshot",), "s"),
         **segment_arrays(model.ties, 2),

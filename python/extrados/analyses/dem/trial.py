@@ -66,7 +66,7 @@ def _moves(context: Context, model: Model) -> tuple[SupportMove, ...]:
     for k, (j, one) in enumerate(zip(context.building.moved(), context.building.initial.movements, strict=True)):
         pair = model.rigid.joints[j]
         if pair is None or max(pair) < model.rigid.count:
-            raise Refused(f"joint '{one.joint}' is not on the ground", ("initial", "movements", k, "joint"))
+            raise Refused(f"joint '{one.joint}' is not on the ground: name a joint at a support", ("initial", "movements", k, "joint"))
         found.append(SupportMove(max(pair), (one.dx, one.dy, float(np.radians(one.turn))), one.start, one.duration))
     return tuple(found)
 
@@ -88,7 +88,7 @@ def start(context: Context, model: Model) -> np.ndarray | None:
         mechanism = MechanismModel(block)
         pose = mechanism.pose([ratio * mechanism.critical[side]])[0]
     except NoView as error:
-        raise Refused(f"this requires a collapse mechanism: {error}", ("initial", "rotation_ratio")) from None
+        raise Refused(f"`rotation_ratio` requires a collapse mechanism: {error}", ("initial", "rotation_ratio")) from None
     shift = np.zeros((len(model.rigid.mass), 3))  # the supports stay
     shift[: len(pose)] = pose
     shift[: len(pose), :2] -= block.centroid

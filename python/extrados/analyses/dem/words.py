@@ -35,7 +35,7 @@ def _fate(r: DemRun | SolidDemRun, joint: str) -> str:
     if r.outcome == "slid":
         return (
             f"Blocks slide by up to {three_figures(1e3 * r.peak_slip_m)} mm ({100 * r.slip_ratio:.3g} % of the {joint} "
-            f"{r.slipped_joint}). The slip at the end is {three_figures(1e3 * r.residual_slip_m)} mm; no {joint} opens"
+            f"{r.slipped_joint}). The slip at the end of the run is {three_figures(1e3 * r.residual_slip_m)} mm; no {joint} opens"
         )
     if r.outcome == "at-rest":
         return f"No {joint} opens or slides"
@@ -73,7 +73,7 @@ def supports_answer(far: float, lift: float, weight: float, work: float | None) 
         return ""
     told = f" Supports move by {three_figures(1e3 * far)} mm"
     if work is not None:
-        told += f" and do a work of {three_figures(1e-3 * work)} kJ"
+        told += f" and do {three_figures(1e-3 * work)} kJ of work"
         told += f" (weight times lift: {three_figures(1e-3 * weight * lift)} kJ)" if abs(lift) > STILL else ""
     return f"{told}."
 
@@ -110,7 +110,7 @@ def solid_answer(r: SolidDemRun, idle: bool) -> str:
     turn = max(r.peak_rotation_rad.items(), key=lambda item: item[1], default=("", 0.0))
     first, audit = _fate(r, "contact"), _audit(r)
     if r.outcome == "rocked":
-        first += f", of which {three_figures(1e3 * r.final_displacement_m)} mm remain at the end"
+        first += f", of which {three_figures(1e3 * r.final_displacement_m)} mm remain at the end of the run"
     if r.dowels:
         gave = f"slipped by up to {1e3 * r.dowel_slip_m:.2g} mm" if r.dowel_slip_m > 0.0 else "held"
         first += f"; dowels {gave}" + (f", {r.dowels_out} of {r.dowels} came out" if r.dowels_out else "")

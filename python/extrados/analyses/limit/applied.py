@@ -16,7 +16,7 @@ from extrados.model.geometry.solids.strands import solid_at
 def chain_of(assembly: Assembly, name: str | None) -> str | None:
     """The chain of a name, the first where none is given, None where the assembly has no chain."""
     if name is not None and name not in assembly.chains:
-        known = f"there are {', '.join(assembly.chains)}" if assembly.chains else "no blocks form one here"
+        known = f"the names are {', '.join(assembly.chains)}" if assembly.chains else "no blocks form an arch or column here"
         raise Refused(f"chain: '{name}' does not exist; {known}", ("analysis", "chain"))
     return name or next(iter(assembly.chains), None)
 
@@ -43,7 +43,7 @@ def _block_at(assembly: Assembly, x: float, y: float) -> int:
     """The block that holds a point, or has it on its face."""
     if found := stones_at(assembly, np.array([x, y])):
         return found[0]
-    raise Refused(f"the load at x = {x:.4g}, y = {y:.4g} m acts on no block", WHOLE)
+    raise Refused(f"the load at x = {x:.4g}, y = {y:.4g} m acts on no block: give a point in or on a block", WHOLE)
 
 
 def pieces(assembly: Assembly, load: AppliedLoad, number: int) -> list[tuple[int, np.ndarray, float]]:
@@ -99,5 +99,5 @@ def place_of(assembly: SolidAssembly, load: AppliedLoad, number: int) -> tuple[i
         if high >= low and high > top:
             best, top = block, float(high)
     if best < 0:
-        raise Refused(f"the load at x = {load.x:.4g}, y = {load.y:.4g} m acts outside the blocks", key)
+        raise Refused(f"the load at x = {load.x:.4g}, y = {load.y:.4g} m meets no block in plan: move the load", key)
     return best, np.array([load.x, load.y, top])

@@ -192,7 +192,7 @@ def cuts_of(building: Building, options: Thrust) -> list[Cut]:
         if len(contacts):
             found.append(_cut(assembly, table, contacts, above, middle, None if options.section else options.direction or 0.0, key))
         elif options.section:
-            raise Refused(f"section '{table.name}': its cut crosses no contact between two blocks", key)
+            raise Refused(f"section '{table.name}': its cut crosses no contact between two blocks: move the cut", key)
     return found
 
 
@@ -210,7 +210,7 @@ def _contacts_of(assembly: SolidAssembly, table: Section, key: Key) -> tuple[np.
                 wanted.add(assembly.joint_names.index(name))
             else:
                 known = ", ".join([*assembly.groups, "ground", *assembly.joint_names[:6]])
-                raise Refused(f"section '{table.name}': no contact has the name '{name}'; there are {known}, ...", (*key, "joints"))
+                raise Refused(f"section '{table.name}': no contact has the name '{name}'; the names are {known}, ...", (*key, "joints"))
         contacts = np.array(sorted(wanted), dtype=int)
         height = np.append(assembly.centroid[:, 2], -np.inf)  # the ground is below
         return contacts, height[a[contacts]] >= height[b[contacts]]
@@ -254,7 +254,7 @@ def refuse_still(building: Building, options: MovingSupports) -> None:
     if building.initial.movements:
         movements_of(building)
     elif options.spread == 0.0 and options.settle == 0.0:
-        raise Refused("with `spread` = 0 and `settle` = 0, no support moves", ("analysis",))
+        raise Refused("with `spread` = 0 and `settle` = 0, no support moves: give one of them another value", ("analysis",))
 
 
 def movements_of(building: Building) -> np.ndarray:

@@ -104,7 +104,8 @@ def collapse_beside(without_dilatancy: LimitAnalysis, direction: int) -> tuple[S
     """The least state without dilatancy, to be given beside an upper bound by associated friction; NoAnswer of large structures."""
     if len(without_dilatancy.assembly.a) > MOST_BESIDE:
         raise NoAnswer(
-            f'the structure has more than {MOST_BESIDE} joints, so this state is calculated only with friction_rule = "non-associated"'
+            f"the structure has more than {MOST_BESIDE} joints, so collapse without dilatancy is calculated only with "
+            'friction_rule = "non-associated"'
         )
     return without_dilatancy.collapse(direction)
 
@@ -134,7 +135,7 @@ def mended_capacity(building: Building, options: LimitAnalysisTable, gamma: floa
     except (BadGeometry, Refused, NoEquilibrium, NoAnswer, Immovable) as error:
         return f"{told} the structure has no capacity: {error}"
     text = f"{told} the collapse acceleration to +x is {closed_g:.4f} g"
-    return f"{text}, which is {closed_g / gamma:.2f} times the {gamma:.4f} g of the given survey" if gamma > 0.0 else text
+    return f"{text}, which is {closed_g / gamma:.2f} times the {gamma:.4f} g of the given geometry" if gamma > 0.0 else text
 
 
 def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
@@ -145,7 +146,10 @@ def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
         "joint_q": Array(assembly.q, ("joint", "axis"), "m", "second end of each joint (at the extrados of an arch)"),
         "outline": Array(np.concatenate(outlines), ("vertex", "axis"), "m", "outlines of the blocks, one after the other"),
         "outline_start": Array(
-            np.cumsum([0, *map(len, outlines)]), ("block_edge",), "", "index of the first vertex of each block; the last value is the end"
+            np.cumsum([0, *map(len, outlines)]),
+            ("block_edge",),
+            "",
+            "index of the first vertex of each block; the last value is the number of all vertices",
         ),
         "centroid": Array(assembly.centroid, ("block", "axis"), "m", "centroids of the blocks"),
         "joint_block": Array(
@@ -203,7 +207,7 @@ def load_arrays(assembly: Assembly, loads: Sequence[AppliedLoad]) -> dict[str, A
             "m",
             "points at which the constant loads act; a distributed load is divided into pieces",
         ),
-        "load_force": Array(np.array(force), ("load_piece", "axis"), "N", "forces at these points, horizontal (to +x) and upward"),
+        "load_force": Array(np.array(force), ("load_piece", "axis"), "N", "constant load at each point, horizontal (to +x) and upward"),
         "load_number": Array(np.array(whole), ("load_piece",), "", "number of the load in the deck, counted from 0"),
     }
 
@@ -217,8 +221,10 @@ def push_arrays(assembly: Assembly, state: State) -> dict[str, Array]:
     most = push.wrench[:, 0]
     return {
         "push_point": Array(push.point, ("push", "axis"), "m", "points at which the passive pressure of the fill acts"),
-        "push_force": Array(state.mobilised[: push.count] * most, ("push",), "N", "its horizontal push, to +x"),
-        "push_most": Array(most, ("push",), "N", "greatest passive force at each point, to +x"),
+        "push_force": Array(
+            state.mobilised[: push.count] * most, ("push",), "N", "horizontal force of the passive pressure at each point, to +x"
+        ),
+        "push_most": Array(most, ("push",), "N", "greatest horizontal force of the passive pressure at each point, to +x"),
     }
 
 
@@ -246,7 +252,7 @@ def tie_arrays(building: Building, loads: Loads, states: dict[str, State]) -> di
     anchored = building.anchored()
     return {
         "tie_point": Array(anchored.point, ("tie", "tie_end", "axis"), "m", "both ends of the ties"),
-        "tie_block": Array(anchored.block, ("tie", "tie_end"), "", "numbers of the blocks at the two ends; -1 is the ground"),
+        "tie_block": Array(anchored.block, ("tie", "tie_end"), "", "numbers of the blocks at the two ends of each tie; -1 is the ground"),
         **forces,
     }
 
@@ -305,7 +311,7 @@ def packed(name: str, paths: dict[str, np.ndarray], unit: str, about: str) -> di
     return {
         name: Array(points, (f"{name}_vertex", "axis"), unit, about),
         f"{name}_start": Array(
-            start, (f"{name}_edge",), "", f"index of the first vertex of each path of {name}; the last value is the end"
+            start, (f"{name}_edge",), "", f"index of the first vertex of each path of {name}; the last value is the number of all vertices"
         ),
         f"{name}_of": Array(np.array(list(paths), dtype=object), (f"{name}_path",), "", f"names of the paths of {name}"),
     }
@@ -321,7 +327,7 @@ def line_arrays(name: str, found: list[ThrustPath], about: str) -> dict[str, Arr
             np.cumsum([0, *(len(path.points) for path in found)]),
             (f"{title}_edge",),
             "",
-            f"index of the first vertex of each path of {title}; the last value is the end",
+            f"index of the first vertex of each path of {title}; the last value is the number of all vertices",
         ),
         f"{title}_of": Array(
             np.array([path.name for path in found], dtype=object),

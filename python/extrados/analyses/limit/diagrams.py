@@ -107,7 +107,7 @@ def _radial(
     around = np.column_stack([np.cos(turn), np.sin(turn)])
     crossed = [[end[0] for bed in beds for end in _ends(bed, centre, way)[0] if end[0] > 0.0] for way in around]
     if not all(crossed):
-        raise Refused("a radial diagram requires supports all around, but one meridian ends beside them: give another `form`", FORM)
+        raise Refused("a radial diagram requires supports all around, but one meridian ends beside the supports: give another `form`", FORM)
     feet = np.array([0.5 * (min(ends) + max(ends)) for ends in crossed])
     radius = float(feet.mean())
     reach = np.linspace(0.0, radius, PROFILE)
@@ -244,7 +244,9 @@ def _weights(assembly: SolidAssembly, points: np.ndarray) -> np.ndarray:
     void = (columns.high - columns.low - columns.depth)[there] > VOID * (columns.high - columns.low)[there]
     if void.mean() > VOID:
         raise Refused(
-            "vertical lines cross voids between the blocks, but a thrust network requires a single layer of masonry", ("structure",)
+            "vertical lines cross voids between the blocks, but a thrust network requires a single layer of masonry: "
+            "use `thrust`, which analyses the blocks",
+            ("structure",),
         )
     nearest = cKDTree(points)
     share = np.bincount(nearest.query(samples[there])[1], columns.mass[there], len(points))

@@ -128,7 +128,7 @@ def run(context: Context, options: Imperfections) -> Result:
             gamma,
             ("survey", "sense"),
             "g",
-            "capacity in both senses (towards +x or along the direction; then opposite); NaN if a geometry cannot stand",
+            "capacity in both senses: first towards +x or along `direction`, second opposite; NaN if a geometry cannot stand",
         ),
     }
     senses = ("along", "opposite") if in_space(building, options) else ("to_right", "to_left")
@@ -142,7 +142,7 @@ def run(context: Context, options: Imperfections) -> Result:
     if fallen:
         result.answer += f" {fallen} of them cannot stand."
     if r.upper_bounds:
-        result.answer += f" In {r.upper_bounds} geometries joints slide, so the capacity is an {out.DILATANT}."
+        result.answer += f" In {r.upper_bounds} geometries, joints slide; the capacity is then an {out.DILATANT}."
     if given < low:
         result.warnings.append(
             f"The capacity of the given geometry, {given:.4f} g, is below the range of the random geometries. In a bond, several "

@@ -368,7 +368,9 @@ def _worst_arrays(assembly: Assembly, job: Places, k: int, worst: Collapse, heav
         "even_load": Array(_standing(job, k, worst), ("stretch", "end"), "m", "uniform loads at the governing position"),
         "collapse_point": Array(state.points(assembly), ("joint", "axis"), "m", "thrust line at collapse, at the governing position"),
         **line_arrays("collapse", thrust_paths(heavier, worst.loads, state, sway=0.0), "at collapse, worst place"),
-        "mechanism_pose": Array(finite_motion(assembly, worst.mechanism), ("block", "component"), "m, m, rad", "the mechanism carried on"),
+        "mechanism_pose": Array(
+            finite_motion(assembly, worst.mechanism), ("block", "component"), "m, m, rad", "mechanism at a finite displacement"
+        ),
         "chain_joint": Array(
             np.concatenate([np.array(j, dtype=int) for j in chains] or [np.empty(0, dtype=int)]),
             ("link",),
@@ -376,7 +378,10 @@ def _worst_arrays(assembly: Assembly, job: Places, k: int, worst: Collapse, heav
             "joints of each chain (arch or stack), one chain after the other",
         ),
         "chain_start": Array(
-            np.cumsum([0, *map(len, chains)]), ("chain_edge",), "", "index of the first joint of each chain; the last value is the end"
+            np.cumsum([0, *map(len, chains)]),
+            ("chain_edge",),
+            "",
+            "index of the first joint of each chain in `chain_joint`; the last value is the length of `chain_joint`",
         ),
     }
 
@@ -563,7 +568,7 @@ def _words(options: MovingLoad, r: out.MovingLoad, what: str, where: str, positi
     if options.force is not None:
         text += f" The given load of {three_figures(options.force / 1000.0)} kN has a safety factor of {r.safety_factor:.2f}."
         if r.adequacy_factor is not None and abs(r.adequacy_factor / r.safety_factor - 1.0) > 1e-9:
-            text += f" With its partial factors the adequacy factor is {r.adequacy_factor:.3g}."
+            text += f" With the partial factors of the load, the adequacy factor is {r.adequacy_factor:.3g}."
     if r.permissible_factor is not None:
         text += (
             f" Permissible limit state: up to {r.permissible_factor:.3g} times the train, a thrust line exists "

@@ -136,13 +136,11 @@ def _arrays(
         force = np.array([nothing if one is None else one.force for one in states]).reshape(-1, *nothing.shape)
         centre = np.array([nothing if one is None else one.centre for one in states]).reshape(-1, *nothing.shape)
         dims = ("section", "contact", "axis3")
-        arrays[f"{name}_force"] = Array(
-            force, dims, "N", f"force on the first of the two blocks of each contact in the state of {name} thrust"
-        )
+        arrays[f"{name}_force"] = Array(force, dims, "N", f"force on the first block of each contact in the state of {name} thrust")
         arrays[f"{name}_centre"] = Array(centre, dims, "m", f"centre of the compression in the state of {name} thrust")
     if central is not None:
         arrays["central_force"] = Array(
-            central.force, ("contact", "axis3"), "N", "force on the first of the two blocks of each contact in the most central state"
+            central.force, ("contact", "axis3"), "N", "force on the first block of each contact in the most central state"
         )
         arrays["central_centre"] = Array(central.centre, ("contact", "axis3"), "m", "centre of the compression in the most central state")
         arrays["central_friction"] = Array(central.friction, ("contact",), "", "shear divided by compression in the most central state")

@@ -148,7 +148,7 @@ def refuse_falling(there: Programme, back: Programme, first: float, neglects: tu
         low, high = sorted((there.gamma, -back.gamma))
         raise CannotStand(
             f"the structure can stand only under a horizontal load between {low:.4f} and {high:.4f} g along {first:g} "
-            "degrees; certificate: the mechanism of the smaller load, in which the weights do positive work",
+            "degrees; certificate: the mechanism at the smaller of these loads, in which the weights do positive work",
             neglects=neglects,
         )
 
@@ -176,7 +176,7 @@ def _arrays(assembly: SolidAssembly, there: Programme, pose: np.ndarray) -> dict
         "contact_point": Array(assembly.corner, ("contact_corner", "axis3"), "m", "corners of the contact polygons"),
         "contact_of": Array(assembly.corner_joint, ("contact_corner",), "", "contact of each corner"),
         "contact_normal": Array(
-            assembly.normal, ("contact", "axis3"), "", "normals of the contacts, pointing into the first of the two blocks"
+            assembly.normal, ("contact", "axis3"), "", "normals of the contacts, pointing into the first block of each contact"
         ),
         "collapse_force": Array(
             there.force,
@@ -184,13 +184,19 @@ def _arrays(assembly: SolidAssembly, there: Programme, pose: np.ndarray) -> dict
             "N",
             "compression (tension of mortar negative) and both shear forces at the corners at collapse",
         ),
-        "contact_force": Array(force, ("contact", "axis3"), "N", "force on the first of the two blocks of each contact at collapse"),
+        "contact_force": Array(force, ("contact", "axis3"), "N", "force on the first block of each contact at collapse"),
         "contact_centre": Array(centre, ("contact", "axis3"), "m", "point of application of the force: centre of the compression"),
         "velocity": Array(
-            there.motion, ("block", "motion"), "m, m, m, rad, rad, rad", "mechanism: velocity of the centroid, and angular velocity"
+            there.motion,
+            ("block", "motion"),
+            "m, m, m, rad, rad, rad",
+            "mechanism: velocity of the centroid and angular velocity of each block",
         ),
         "mechanism_pose": Array(
-            pose, ("block", "pose"), "m, m, m, rad, rad, rad", "mechanism at a finite displacement: translation and rotation vector"
+            pose,
+            ("block", "pose"),
+            "m, m, m, rad, rad, rad",
+            "mechanism at a finite displacement: translation and rotation vector of each block",
         ),
     }
 
@@ -209,7 +215,10 @@ def _without_dilatancy(
     if isinstance(limit, CrushingLimit) or options.mortar == "ductile":
         return {"non_associated_reason": "with crushing, or with mortar, only the upper bound is calculated"}, {}
     if options.friction_rule == "associated" and contacts > MOST_BESIDE:
-        why = f'the structure has more than {MOST_BESIDE} contacts, so this state is calculated only with friction_rule = "non-associated"'
+        why = (
+            f"the structure has more than {MOST_BESIDE} contacts, so collapse without dilatancy is calculated only with "
+            'friction_rule = "non-associated"'
+        )
         return {"non_associated_reason": why}, {}
     rows, states = [], {}
     sought = list(dict.fromkeys(directions))
@@ -273,7 +282,10 @@ def scene_arrays(assembly: SolidAssembly) -> dict[str, Array]:
         "solid_vertex": Array(np.concatenate([p.vertices for p in assembly.parts]), ("vertex", "axis3"), "m", "vertices of the solids"),
         "solid_face": Array(np.concatenate(faces), ("face_vertex",), "", "vertices of each face, counter-clockwise as seen from outside"),
         "solid_face_start": Array(
-            np.cumsum([0, *map(len, faces)]), ("face_edge",), "", "index of the first vertex of each face; the last value is the end"
+            np.cumsum([0, *map(len, faces)]),
+            ("face_edge",),
+            "",
+            "index of the first vertex of each face; the last value is the number of all vertices",
         ),
         "solid_face_block": Array(owner, ("face",), "", "stone of each face"),
         "solid_centroid": Array(assembly.centroid, ("block", "axis3"), "m", "centroids of the blocks"),

@@ -250,7 +250,7 @@ def _opened_in_words(word: str, movement: np.ndarray, opened: list[out.JointOpen
         + (f": {shown}" if shown else "")
         + (f" and {len(wide_open) - 6} more" if len(wide_open) > 6 else "")
         + (f"; {_counted(slid, 'joint')} {'slides' if slid == 1 else 'slide'}" if slid else "")
-        + f". The weight does a work of {three_figures(work)} J."
+        + f". The weight does {three_figures(work)} J of work."
     )
 
 

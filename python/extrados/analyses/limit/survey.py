@@ -125,6 +125,6 @@ def run(context: Context, options: Survey) -> Result:
         )
     text += f". {len(without)} have no result." if without else "."
     if r.upper_bounds:
-        text += f" In {r.upper_bounds} sections joints slide, so the capacity is an {out.DILATANT}."
+        text += f" In {r.upper_bounds} sections, joints slide; the capacity is then an {out.DILATANT}."
     result.answer = text + (" survey.csv gives the reasons." if fallen or without else "")
     return result

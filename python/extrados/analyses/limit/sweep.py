@@ -163,7 +163,9 @@ def _store(
             gamma, ("value",), "g", "collapse acceleration towards +x; 0 for a structure that cannot stand, NaN without a result"
         ),
         "mechanism": Array(number, ("value",), "", "number of the mechanism; 0 without a mechanism"),
-        "change": Array(np.array([c.value for c in r.changes]), ("change",), "", "values of the key at which the mechanism changes"),
+        "change": Array(
+            np.array([c.value for c in r.changes]), ("change",), "", "values of the key in `vary` at which the mechanism changes"
+        ),
     }
     if options.fracture:
         result.arrays["fractured"] = Array(fractured, ("value",), "g", "with the leeward buttress cracked")
@@ -306,10 +308,15 @@ def _examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: 
     of = [number for number, count in blocks.items() for _ in range(count)]
     return {
         "example_mechanism": Array(
-            np.array(of, dtype=int), ("example_path",), "", "number of the mechanism that each of these blocks shows"
+            np.array(of, dtype=int), ("example_path",), "", "number of the mechanism to which each block outline of `example` belongs"
         ),
-        **packed("example", outlines, "m", "outlines of the blocks of one section for each mechanism (number of the mechanism / block)"),
-        **packed("example_moved", moved, "m", "the same, moved"),
+        **packed(
+            "example",
+            outlines,
+            "m",
+            "block outlines of one structure for each mechanism; the name of a path is mechanism number / block number",
+        ),
+        **packed("example_moved", moved, "m", "outlines of `example`, moved by the mechanism"),
     }
 
 
@@ -332,7 +339,9 @@ def _solid_examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], num
             if name.startswith("solid_")
         }
         pose = pose_of(one.assembly, one.mechanism.motion)
-        found[f"solid_pose_{number}"] = Array(pose, (f"block_{number}", "pose"), "m, m, m, rad, rad, rad", "the mechanism carried on")
+        found[f"solid_pose_{number}"] = Array(
+            pose, (f"block_{number}", "pose"), "m, m, m, rad, rad, rad", "mechanism at a finite displacement"
+        )
     return found | {"example_mechanism": Array(np.array(shown, dtype=int), ("example",), "", "numbers of the mechanisms that are drawn")}
 
 
@@ -341,16 +350,16 @@ def _words(options: Sweep, r: out.Sweep, located: bool) -> str:
     best, most = f"{r.optimum_value:.4g}{unit}", r.optimum_collapse_acceleration_g
     level = [v for v, g in zip(r.values, r.collapse_accelerations_g, strict=True) if g is not None and abs(g - most) <= LEVEL * abs(most)]
     if r.locked_limits:
-        where = f"greatest near locking, at {best}"
+        where = f"near locking, at {best}"
     elif len(level) == len(r.values):
-        where = "the same throughout"
+        where = "the same for all values"
     elif len(level) > 1:
-        where = f"greatest from {level[0]:.4g} to {level[-1]:.4g}{unit}"
+        where = f"at values from {level[0]:.4g} to {level[-1]:.4g}{unit}"
     else:
-        where = f"greatest at an optimum of {best}" if r.optimum_inside else f"greatest at the end of the range, {best}"
+        where = f"at the optimum {best}" if r.optimum_inside else f"at the end of the range, {best}"
     text = (
-        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{unit}: the collapse acceleration is {where}, {most:.4f} g "
-        f"({r.optimum_tilt_angle_deg:.2f} degrees). {len(r.mechanisms)} mechanism{'s' if len(r.mechanisms) != 1 else ''}"
+        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{unit}: the greatest collapse acceleration is {most:.4f} g "
+        f"({r.optimum_tilt_angle_deg:.2f} degrees), {where}. {len(r.mechanisms)} mechanism{'s' if len(r.mechanisms) != 1 else ''}"
     )
     moves = [f"{c.before} to {c.after} at {c.value:.4g}" for c in r.changes if c.before and c.after]
     locked = ", ".join(f"{v:.4g}" for v in r.locked_limits)

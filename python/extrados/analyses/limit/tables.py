@@ -105,12 +105,12 @@ class Tilt(SpatialLimit, Animated):
         source="after Orduna and Lourenco 2005",
     )
     block_size: bool | None = key(
-        None, "for solids: also calculate the capacity with blocks of half the length in each direction, and with the other bond"
+        None, "for solids: also calculate the capacity with blocks half as long, in one direction at a time, and with the other bonds"
     )
     pyramids: int | None = key(
         None,
-        "for solids: also calculate bounds with friction pyramids instead of friction cones, inscribed "
-        "and circumscribed, with this number of sides",
+        "for solids: also calculate bounds with inscribed and circumscribed friction pyramids of this number of sides, instead of "
+        "friction cones",
         ge=3,
         le=64,
     )
@@ -125,16 +125,19 @@ class Section(Table):
     """A section of blocks in space whose thrust is sought: a plane cut, or named contacts."""
 
     name: str = key(about="its name", max_length=80)
-    x: Length | None = key(None, "x of a cut: all contacts between blocks whose centroids lie on both sides of it")
-    y: Length | None = key(None, "cut across y")
-    z: Length | None = key(None, "level cut at this height")
+    x: Length | None = key(
+        None, "x of a vertical cut. Its section is all contacts between blocks with centroids on different sides of the cut"
+    )
+    y: Length | None = key(None, "y of a vertical cut, as an alternative to `x`")
+    z: Length | None = key(None, "height of a horizontal cut, as an alternative to `x`")
     joints: list[str] | None = key(
         None, 'names of contacts, or of groups of contacts, instead of a cut; "ground" means all supports', min_length=1, max_length=10000
     )
     toward: Angle | None = key(
         None,
-        "direction of the thrust in plan: angle from +x towards +y. The thrust acts on the blocks at greater x or y, or on the blocks "
-        "or the ground below. Default: perpendicular to a vertical cut, otherwise outward from the middle of the structure",
+        "direction of the thrust in plan: angle from +x towards +y. The thrust of a vertical cut acts on the blocks at greater x or y; any "
+        "other thrust acts on the blocks or the ground below. Default: perpendicular to a vertical cut, otherwise outward from the "
+        "middle of the structure",
         ge=-360,
         le=360,
     )
@@ -255,8 +258,8 @@ class MovingSupports(BuildingAnalysis, Animated):
     )
     movement: Length | None = key(
         None,
-        "size of the movement of the right support, for structures whose movement is not continued to "
-        "collapse; default: 1/1000 of the width",
+        "size of the movement of the right support; not for an arch without ties, which is moved up to collapse. "
+        "Default: 1/1000 of the width",
         gt=0,
     )
     steps: int = key(200, "for an arch: number of steps from the start of the movement to collapse", ge=10, le=5000)
@@ -332,7 +335,7 @@ class Serviceability(Table):
     )
     passive_share: float = key(
         0.0,
-        "share of the passive pressure (`passive` of the fill) that acts under service loads, because their movements are small",
+        "share of the passive pressure (`passive` of the fill) that acts under service loads, which cause only small movements",
         ge=0,
         le=1,
     )
@@ -355,7 +358,7 @@ class MovingLoad(LimitAnalysisTable):
     gap: Length | None = key(None, "gap between the bogies of an SV vehicle: 1.2 (the default), 5 or 9 m", ge=1.2, le=9.0)
     axles: list[Length] = key([0.0], "distance of each axle behind the first axle", max_length=200)
     shares: list[float] | None = key(None, "share of the load on each axle; default: equal shares", max_length=200)
-    force: Force | None = key(None, "total load of the axles; adds the safety factor", gt=0)
+    force: Force | None = key(None, "total load of the axles; the results then include the safety factor", gt=0)
     axle_loads: list[Force] | None = key(None, "load of each axle; replaces `shares` and `force`", max_length=200)
     uniform: list[UniformLoad] = key([], "uniform loads along the train; these require `axle_loads`, or axles = []", max_length=50)
     adverse: bool = key(
@@ -365,8 +368,8 @@ class MovingLoad(LimitAnalysisTable):
     )
     alpha: float = key(1.0, "adjustment or classification factor of the train", gt=0, le=10)
     lanes: int | None = key(None, "number of notional lanes that LM1 loads; default: all that fit into the width", ge=1, le=20)
-    width: Length | None = key(None, "transverse width over which the load is carried; at most the depth", gt=0)
-    contact_length: Length = key(0.3, "contact length of an axle on the road, along a bridge with fill", gt=0)
+    width: Length | None = key(None, "transverse width over which the load is carried; at most the depth of the structure", gt=0)
+    contact_length: Length = key(0.3, "for a bridge with fill: contact length of an axle on the road, along the bridge", gt=0)
     factors: PartialFactors = key(PartialFactors(), "partial factors")
     serviceability: Serviceability | None = key(
         None,

@@ -80,7 +80,7 @@ def run(context: Context, options: Thrust) -> Result:
     result.results = r
     result.arrays = geometry_arrays(assembly) | tie_arrays(context.building, answer.loads, states)
     result.arrays |= load_arrays(assembly, options.load)
-    about = {"least": "of least thrust", "most": "of greatest thrust", "central": "that is most central"}
+    about = {"least": "for the least thrust", "most": "for the greatest thrust", "central": "in the most central equilibrium"}
     for name, state in states.items():
         result.arrays.update(state_arrays(assembly, name, state, about[name]))
         result.arrays.update(graphic_arrays(answer, name, state, about[name]))
@@ -125,7 +125,7 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
             else f"stays within the central {100 * part:.1f} % of the joints (geometric safety factor {safety:.2f})"
         )
         needed = np.inf if central.required_friction is None else central.required_friction
-        needs = f"{keeps} and requires a friction of {needed:.2f}"
+        needs = f"{keeps} and requires a coefficient of friction of {needed:.2f}"
     if r.chain is None:
         text = (
             f"At {r.gamma_g:g} g {(f'the most central state {needs}' if needs else 'an equilibrium state is admissible')}. "

@@ -78,8 +78,8 @@ def run(context: Context, options: ThrustNetwork) -> Result:
     more = "`lines` and `meridians`" if form == "radial" else "`lines`"
     result.warnings += [
         (
-            f"between its nodes, {ABOUT[aim]} leaves the blocks by up to {1000.0 * by:.3g} mm ({100.0 * by / r.thickness_m:.2g} "
-            f"% of the thickness): give more {more}"
+            f"between the nodes, the bars of {ABOUT[aim]} pass outside the blocks by up to {1000.0 * by:.3g} mm "
+            f"({100.0 * by / r.thickness_m:.2g} % of the thickness): give more {more}"
         )
         for aim, by in away.items()
         if by is not None and r.leaves(by)
@@ -124,10 +124,10 @@ def _table(diagram: Diagram, network: Network) -> TableData:
 def _between(value: float | None, bound: float | None, unit: float) -> str:
     """A value found with its bound; only one where both agree."""
     if value is None:
-        return "not found" if bound is None else f"not found (bound of the diagram: {bound / unit:.4g})"
+        return "not found" if bound is None else f"not found (bound for this form diagram: {bound / unit:.4g})"
     if bound is None or abs(value - bound) <= out.AGREE * abs(value):
         return f"{value / unit:.4g}"
-    return f"{value / unit:.4g} (bound of the diagram: {bound / unit:.4g})"
+    return f"{value / unit:.4g} (bound for this form diagram: {bound / unit:.4g})"
 
 
 def words_of(r: out.ThrustNetwork) -> str:
@@ -136,7 +136,7 @@ def words_of(r: out.ThrustNetwork) -> str:
     if r.least_part_of_depth > 1.0:
         return (
             f"{text}no network found lies within the structure. The best one requires {r.least_part_of_depth:.2f} "
-            f"times the depth (bound of the diagram: {r.least_part_bound or 0.0:.2f} times). This does not prove "
+            f"times the depth (bound for this form diagram: {r.least_part_bound or 0.0:.2f} times). This does not prove "
             "collapse, because another form diagram can give a network."
         )
     text += (
@@ -167,6 +167,6 @@ def _load_words(r: out.ThrustNetwork) -> str:
         )
     return (
         f"{along}networks carry a horizontal load of {_between(load, bound, 1.0)} times the weight, if the load acts at the nodes. The "
-        "real load acts at the centroids of the blocks, so the collapse load can be less. For the barrel vaults that were compared, "
-        f"this value exceeds that of `tilt` by {ABOVE} %."
+        "real load acts at the centroids of the blocks, so the collapse load can be less. In comparisons of barrel "
+        f"vaults, this value was {ABOVE} % above the collapse acceleration by `tilt`."
     )

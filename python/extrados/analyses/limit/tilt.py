@@ -115,7 +115,7 @@ def run(context: Context, options: Tilt) -> Result:
     if answer.least:
         first = next(iter(answer.least))
         for word, state_of in (("least", answer.least[first]), ("most", answer.most[first])):
-            about = f"of {'least' if word == 'least' else 'greatest'} thrust of {with_article(first)}, upright"
+            about = f"for the {'least' if word == 'least' else 'greatest'} thrust of {with_article(first)} without a horizontal load"
             result.arrays.update(state_arrays(assembly, word, state_of, about))
             result.arrays.update(graphic_arrays(answer, word, state_of, about))
             result.arrays.update(tie_arrays(building, answer.loads, {word: state_of}))
@@ -146,18 +146,20 @@ def _film(limit: LimitAnalysis, answer: Answer) -> dict[str, Array]:
     for gamma in np.linspace(0.0, answer.gamma * (1.0 - 1e-6), FILM).tolist():
         pair = limit.thrust(joints, gamma)
         rows.append([(s.points(answer.assembly)[joints], thrust_of(answer.assembly, s, joints, at)) for s in pair])
-    about = "for the first arch or column of blocks, while the ground is tilted up to collapse"
+    about = "of the first arch or column of blocks, while the ground is tilted up to collapse"
     return {
         "film_tilt": Array(
             np.linspace(0.0, degrees(answer.gamma), FILM), ("film",), "deg", "tilt of the ground in each picture of the animation"
         ),
         **{
-            f"film_{name}": Array(np.array([row[k][0] for row in rows]), ("film", "chain_joint", "axis"), "m", f"{name} thrust {about}")
-            for k, name in enumerate(("least", "most"))
+            f"film_{name}": Array(
+                np.array([row[k][0] for row in rows]), ("film", "chain_joint", "axis"), "m", f"thrust line for the {word} thrust {about}"
+            )
+            for k, (name, word) in enumerate((("least", "least"), ("most", "greatest")))
         },
         **{
-            f"film_thrust_{name}": Array(np.array([row[k][1] for row in rows]), ("film",), "N", f"{name} thrust {about}")
-            for k, name in enumerate(("min", "max"))
+            f"film_thrust_{name}": Array(np.array([row[k][1] for row in rows]), ("film",), "N", f"{word} thrust {about}")
+            for k, (name, word) in enumerate((("min", "least"), ("max", "greatest")))
         },
     }
 
@@ -318,7 +320,7 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
                 np.cumsum([0, *map(len, outlines)]),
                 ("block_edge",),
                 "",
-                "index of the first vertex of each block; the last value is the end",
+                "index of the first vertex of each block; the last value is the number of all vertices",
             ),
             "crack_point": Array(found.state.points(found.assembly), ("joint", "axis"), "m", "thrust line, cracked"),
         }
@@ -359,7 +361,7 @@ def _told(found: out.Tilt) -> str:
         ),
     )
     bounds = [way for way, dilating, *_ in ends if dilating]
-    text = f"Under the load {' and '.join(bounds)} joints slide, so the capacity is an {out.DILATANT}. " if bounds else ""
+    text = f"Under the load {' and '.join(bounds)}, joints slide, so the capacity is an {out.DILATANT}. " if bounds else ""
     for way, _, r, least, design, paths in ends:
         if r is None or least is None:
             continue

@@ -46,7 +46,10 @@ def _periods(options: MotionStudy, step: float) -> np.ndarray:
     """Of a spectrum [s]; Refused where the time step is too long for those that are asked for or of a measure."""
     shortest = core.POINTS_PER_CYCLE * step / 4096.0
     if shortest > (needed := min(options.longest, HOUSNER_BAND[0])):
-        raise Refused(f"a time step of {step:.3g} s is too long for the spectrum, which requires the period of {needed:g} s", ("motion",))
+        raise Refused(
+            f"a time step of {step:.3g} s is too long for the spectrum, which must include the period of {needed:g} s: use shorter steps",
+            ("motion",),
+        )
     return np.geomspace(max(options.shortest, shortest), options.longest, options.periods)
 
 
@@ -226,10 +229,10 @@ def describe(name: str, r: out.OneMotion) -> str:
     if r.directed_pulses is not None:
         like = [one for one in r.directed_pulses if one.pulse_like]
         text += (
-            f"Over all directions it is pulse-like: period {like[0].period_s:.2f} s at {like[0].angle_deg:.0f} degrees from the first component "
-            "(Shahi and Baker 2014). "
+            f"Over all directions the motion is pulse-like: period {like[0].period_s:.2f} s at {like[0].angle_deg:.0f} degrees "
+            "from the first component (Shahi and Baker 2014). "
             if like
-            else "Over all directions it is not pulse-like (Shahi and Baker 2014). "
+            else "Over all directions the motion is not pulse-like (Shahi and Baker 2014). "
         )
     pulse = r.wavelet_pulse
     if pulse.pulse_like:

@@ -48,8 +48,8 @@ def run(context: Context, options: ShakeTable) -> Result:
     )
     result.answer = (
         (
-            f"The stroke limits the table to {100 * table.stroke:.3g} cm below {corners[0]['stroke_to_flow']:.3g} Hz, and the "
-            f"velocity to {100 * velocity:.3g} cm/s above it; "
+            f"Below {corners[0]['stroke_to_flow']:.3g} Hz, the stroke limits the table to {100 * table.stroke:.3g} cm. Above this "
+            f"frequency, the velocity limits the table to {100 * velocity:.3g} cm/s; "
         )
         + "; ".join(
             f"with {mass:.4g} kg, the force limits the table above {c['flow_to_force']:.3g} Hz"
@@ -116,17 +116,20 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
         },
         {"time": "s", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2"},
     )
-    result.files["table_motion.AT2"] = export.at2(f"{motion.name}, in the form that the table can play", played.acceleration, played.step)
+    result.files["table_motion.AT2"] = export.at2(
+        f"{motion.name}, scaled to the limits of the shake table", played.acceleration, played.step
+    )
     if r["fits"]:
         result.answer += (
-            f" {motion.name} is within the limits: it needs {100 * r['peak_displacement_m']:.3g} cm and "
+            f" {motion.name} is within the limits: the motion requires {100 * r['peak_displacement_m']:.3g} cm and "
             f"{100 * r['peak_velocity_m_s']:.3g} cm/s."
         )
         return r
     worst = max(fits, key=lambda f: max(f.stroke, f.flow, f.force))
     result.answer += (
-        f" {motion.name} exceeds the limits: it needs {100 * r['peak_displacement_m']:.3g} cm and {100 * r['peak_velocity_m_s']:.3g} "
-        f"cm/s, {max(worst.stroke, worst.flow, worst.force):.2f} times the {worst.governing}. To fit the "
+        f" {motion.name} exceeds the limits: the motion requires {100 * r['peak_displacement_m']:.3g} cm and "
+        f"{100 * r['peak_velocity_m_s']:.3g} cm/s, {max(worst.stroke, worst.flow, worst.force):.2f} times the limit of "
+        f"{worst.governing}. To fit the "
         f"motion, scale time by {chosen.time_scale:.3f} and acceleration by {chosen.amplitude:.3f}."
     )
     return r

@@ -22,7 +22,7 @@ class MotionStudy(Analysis):
     shortest: Time = key(0.02, "shortest period of the spectra", ge=0.005)
     longest: Time = key(10.0, "longest period of the spectra", le=50)
     periods: int = key(200, "number of periods of the spectra; the ratio of neighbouring periods is constant", ge=10, le=4000)
-    impulses: int = key(3, "number of the strongest impulses that are fitted", ge=1, le=20, source="thesis 5.3.2")
+    impulses: int = key(3, "number of impulses that are fitted, the strongest first", ge=1, le=20, source="thesis 5.3.2")
     max_period: Time = key(4.0, "longest impulse sought", gt=0)
     export: list[Literal["AT2", "columns"]] = key(["AT2", "columns"], "formats in which the motion is written")
 

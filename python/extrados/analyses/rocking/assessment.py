@@ -138,7 +138,7 @@ def _limits_of_criterion(context: Context, r: out.Assessment) -> list[str]:
     if rows and (not isinstance(context.deck.motion, SinePulse) or context.deck.motion.floor is not None):
         first = rows[0]
         warnings.append(
-            "the criterion was derived for single sines. For it, the strongest impulse of this motion is "
+            "the criterion was derived for single sines, so the strongest impulse of this motion is "
             f"replaced by a sine of {abs(first.amplitude_g):.3g} g and a period of {first.period_s:.3g} s. This sine "
             f"explains {100 * first.goodness_of_fit:.0f} % of the squared acceleration over its duration"
         )
@@ -190,7 +190,7 @@ def _undecided(margins: dict[str, float | None]) -> list[str]:
     if len(falls) < 2:
         return []
     each = ", ".join(f'"{rule}" {"none" if margin is None else f"{margin:.3g}"}' for rule, margin in margins.items())
-    return [f"The impact rule decides the verdict. Safety factor by each impact rule: {each}."]
+    return [f"The impact rule decides the verdict. Safety factor with each impact rule: {each}."]
 
 
 def _row(rank: int, impulse: Impulse, fit: Fit, own: Fit, radius: float) -> out.AssessedImpulse:

@@ -65,7 +65,7 @@ def _keeping_more(context: Context, rocker: Rocker, response: Response) -> list[
         return []
     found = []
     if (kept := model.kept_by_elements) is not None:
-        found.append((kept, "discrete elements may keep more velocity than a plastic impact at all joints"))
+        found.append((kept, "in discrete elements, an impact may keep more velocity than the assumed plastic impact at all joints"))
     frequency, limit = beat(context, response), model.fastest_beat
     if limit is not None and frequency > limit:
         found.append((1.0, f"the motion repeats itself at {frequency:.2g} Hz: {too_fast(limit)}"))

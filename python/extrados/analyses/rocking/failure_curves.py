@@ -341,8 +341,8 @@ def _answer(r: out.FailureCurves) -> str:
             above = sum(v == "fails" for v in c.curve_verdicts)
             static = sum(v == "fails" for v in c.static_verdicts)
             told.append(
-                f"{c.label}: {static} by the peak acceleration as a constant acceleration, {above} by the failure "
-                f"curve, {falls} in a run of the whole motion"
+                f"{c.label}: {static} if the peak acceleration acts constantly, {above} by the failure curve, "
+                f"{falls} in a run of the whole motion"
             )
-        text += f" Of {len(r.impulses)} motions the following numbers cause collapse: {'; '.join(told)}."
+        text += f" Number of motions that cause collapse, of {len(r.impulses)}: {'; '.join(told)}."
     return text

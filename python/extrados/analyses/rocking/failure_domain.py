@@ -383,8 +383,8 @@ def run(context: Context, options: FailureDomain) -> Result:
         friction = f" at friction {conditions.friction:.2f}" if conditions.friction is not None else ""
         result.warnings.append(
             f"{handed} of {curves.codes.size} pulses were continued with rigid contacts: joints slide{friction} "
-            f"in {conditions.sliding} pulses, and hinges form at other joints in {conditions.hinges_elsewhere}. "
-            "At these durations the failure curves are accurate to one cell of the map."
+            f"in {conditions.sliding} pulses, and hinges form outside the mechanism in {conditions.hinges_elsewhere}. "
+            "At the durations of these pulses, the failure curves are accurate to one cell of the map."
         )
         if options.at_amplitudes:
             result.warnings.append(

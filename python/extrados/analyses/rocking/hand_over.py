@@ -621,7 +621,7 @@ def decide_cells(
         return unknown
     if len(index) > limit:
         context.warnings.append(
-            f"Joints slide or hinges form at other joints in {len(index)} cells of the map. This exceeds "
+            f"Joints slide or hinges form outside the mechanism in {len(index)} cells of the map. This exceeds "
             f"`hand_over_cells` = {limit}, so these cells are not continued with rigid contacts."
         )
         return unknown

@@ -112,7 +112,7 @@ def rocking_result(context: Context, ran: Ran, rocker: Rocker, of: str, friction
         lost="the energy lost at impacts, minus the energy absorbed by restraints",
         friction=friction,
         coordinates={"rotation": (response.rotation, "rad"), "rotation_rate": (response.rate, "rad/s")},
-        event_value="at peak and collapse: rotation in rad; before an impact: angular velocity in rad/s; at uplift: the side",
+        event_value="at peak and collapse: rotation in rad; before an impact: angular velocity in rad/s; at uplift: 1 to +x, -1 to -x",
         chaotic=doubt.chaotic,
         growth=doubt.growth,
         violated=doubt.violated,

@@ -46,7 +46,7 @@ def structures_of(context: Context, options: tables.FailureCurves) -> list[Struc
     for number, change in enumerate(options.variants or [{}]):
         key = ("analysis", "variants", number)
         if "kind" in change:
-            raise Refused(f"a variant can change keys of '{data['kind']}', but not its kind", (*key, "kind"))
+            raise Refused(f"a variant can change keys of '{data['kind']}', but not the kind of the structure", (*key, "kind"))
         try:
             table = functools.reduce(lambda table, name: changed(table, name, change[name]), change, data)
             found.append(read_table(type(building.require_structure()), table))

@@ -196,9 +196,9 @@ def _answer(context: Context, model: SoftBaseModel, r: SoftBaseResponse, found: 
     rigidly = ""
     if rigid is not None:
         rigidly = {
-            "collapse": " On a rigid base, with Housner's impact, it would overturn.",
-            "recovery": f" On a rigid base, with Housner's impact, it would rock by {1e3 * abs(rigid[1]):.3g} mrad and recover.",
-            "no-hinging": " On a rigid base it would not rock.",
+            "collapse": " On a rigid base, with Housner's impact, the block would overturn.",
+            "recovery": f" On a rigid base, with Housner's impact, the block would rock by {1e3 * abs(rigid[1]):.3g} mrad and recover.",
+            "no-hinging": " On a rigid base, the block would not rock.",
         }[rigid[0]]
     word = context.building.structure.word if context.building.structure is not None else "block"
     return (

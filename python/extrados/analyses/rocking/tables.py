@@ -20,8 +20,8 @@ def hand_over_cells() -> Any:
     """Key of analyses that draw a map."""
     return key(
         100,
-        "if joints slide or hinges form at other joints in at most this number of cells of the map, "
-        "these cells are continued with rigid contacts; if there are more, none is continued. 0: never",
+        "cells of the map in which joints slide or hinges form outside the mechanism are continued with rigid contacts, if there are at "
+        "most this number of such cells; otherwise none is continued. 0: never",
         ge=0,
         le=1_000_000,
         source="Moreau 1988",
@@ -158,7 +158,9 @@ class FailureCurves(RockingTable):
     @model_validator(mode="after")
     def _trains(self) -> "FailureCurves":
         if self.pulse != "sine" and self.cycles != [1]:
-            raise ValueError(f"the key `cycles` is only for sine pulses; a pulse of shape '{self.pulse}' has only one cycle")
+            raise ValueError(
+                f"the key `cycles` is only for sine pulses, and a pulse of shape '{self.pulse}' has one cycle: remove `cycles`"
+            )
         if self.fits and (self.pulse != "sine" or self.cycles != [1]):
             raise ValueError(
                 'the key `fits` requires failure curves of single sines: give pulse = "sine" and cycles = [1], or remove `fits`'
@@ -166,7 +168,7 @@ class FailureCurves(RockingTable):
         if len(set(self.cycles)) < len(self.cycles):
             raise ValueError("cycles holds a number twice")
         if max(1, len(self.variants)) * len(self.cycles) > 24:
-            raise ValueError("variants times cycles give more than 24 curves, the greatest number that a figure can show")
+            raise ValueError("variants times cycles give more than 24 curves, the most that a figure can show: give fewer")
         return self
 
 
@@ -176,7 +178,7 @@ class Assessment(RockingTable):
     kind: Literal["assessment"]
     considers: ClassVar = ()
     needs_motion: ClassVar = True
-    impulses: int = key(3, "number of the strongest impulses that are checked", ge=1, le=20)
+    impulses: int = key(3, "number of impulses that are checked, the strongest first", ge=1, le=20)
     min_period: Time | None = key(None, "shortest period of the impulses searched; default: 4 time steps", gt=0)
     max_period: Time = key(4.0, "longest impulse sought", gt=0)
 

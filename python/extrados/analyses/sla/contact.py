@@ -117,7 +117,7 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
         core_model.end_stage(1.0)
         return True
     warnings.append(
-        "no consistent set of dry joints that slide under the constant loads alone was found. The analysis therefore "
+        "under the constant loads alone, no consistent set of dry joints that slide was found. The analysis therefore "
         "assumes that the joints do not slide before the reference load acts"
     )
     core_model.set_damage(start.into(damage, at, True))

@@ -211,8 +211,8 @@ def run_curves(
     """
     if model.slides and (options.solution == "incremental" or options.without_equilibrium not in ("continue", "load-unload")):
         raise Refused(
-            "neither an incremental solution nor other variants can follow joints that slide. Give the joints friction = "
-            '"no-sliding", or use events with load-unload',
+            'only solution = "events" with without_equilibrium = "continue" or "load-unload" can follow joints that slide: give '
+            'these keys, or give the joints friction = "no-sliding"',
             ("joints", "friction"),
         )
     curves = []
@@ -222,7 +222,7 @@ def run_curves(
         if damage is not None:
             if damage.shape[1] != core_model.points:
                 raise Refused(
-                    f"resume_from: the earlier wall has {damage.shape[1]} integration points (with those of bars), "
+                    f"resume_from: the earlier wall has {damage.shape[1]} integration points (including those of bars), "
                     f"but this wall has {core_model.points}",
                     ("analysis", "resume_from"),
                 )
@@ -297,8 +297,9 @@ def bring_on_constant_loads(
         far = float(np.abs(core_model.displacement(0.0)[:, : model.place.shape[1]]).max())
         if not far <= FAR * model.extent:
             raise NotCarried(
-                f"the structure cannot carry the constant loads. They would move it by {far:.3g} m, more than 1/10 of its size of "
-                f"{model.extent:.3g} m: the structure is a mechanism, held only by the residual stiffness of open joints and cracks",
+                f"the structure cannot carry the constant loads. The displacement under these loads would be {far:.3g} m, more than 1/10 "
+                f"of the size of the structure ({model.extent:.3g} m). The structure is a mechanism, held only "
+                "by the residual stiffness of open joints and cracks",
                 WHOLE,
             )
     return found, rubs
@@ -642,7 +643,7 @@ class _Run:
                 events.interrupted = True
             else:
                 if state is None:
-                    curve.warnings.append("the state at the peak could not be recalculated from the batch of events before it")
+                    curve.warnings.append("the state at the peak could not be recalculated and is therefore not saved")
                 else:
                     kept.append(state)
         for step in (self.drop_step, self.last_step):

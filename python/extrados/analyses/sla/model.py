@@ -241,22 +241,23 @@ def _freedoms(mesh: Mesh, held: set[tuple[int, int]], moved: Load | None) -> tup
         for part in moved.parts:
             common += [(int(n), AXES[moved.direction], part.ratio) for n in mesh.nodes_at(part, "displacement")]
         if all(share == 0.0 for _, _, share in common):
-            raise BadGeometry("displacement: every `ratio` is 0, so nothing moves")
+            raise BadGeometry("displacement: every `ratio` is 0, so nothing moves: give a `ratio` other than 0")
         if len({n for n, _, _ in common}) < len(common):
-            raise BadGeometry("two parts of the displacement have a node in common")
+            raise BadGeometry("two parts of the displacement have a node in common: give places that do not overlap")
         ties.append(common)
     tied = {(n, d) for tie in ties for n, d, _ in tie}
     if clash := held & tied:
         node, direction = min(clash)
         raise BadGeometry(
-            f"node {node + 1} at x {mesh.xy[node, 0]:g} m, y {mesh.xy[node, 1]:g} m is both restrained and tied in {'xy'[direction]}"
+            f"node {node + 1} at x {mesh.xy[node, 0]:g} m, y {mesh.xy[node, 1]:g} m is both restrained and tied "
+            f"in {'xy'[direction]}: remove one of the two"
         )
     try:
         freedoms = core.Freedoms.make(len(mesh.xy), sorted(held), ties)
     except ValueError as error:
         raise BadGeometry(str(error)) from None
     if not (freedoms.equation >= 0).any():
-        raise BadGeometry("every node is restrained, so nothing can move")
+        raise BadGeometry("every node is restrained, so nothing can move: remove supports")
     return freedoms, common
 
 
@@ -319,7 +320,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     else:
         unit = resultant(reference) if not options.stages else 1.0  # each stage has its own
     if not options.stages and (freedoms.equation[np.abs(reference) > 0] < 0).all():
-        raise BadGeometry("the reference load acts only on nodes that are restrained")
+        raise BadGeometry("the reference load acts only on nodes that are restrained: load other nodes")
     behaviour, ratio = _behaviour(mesh, options, bool(constant_loads or options.stages))
     # Of stages, of which each has its own, that while the constant loads come on
     growing = reference if not options.stages else constant
@@ -425,7 +426,9 @@ def hills_of(materials: Sequence[Material], linear: np.ndarray, options: CrackOp
     if not any(criterion is not None for criterion in found):
         return None
     if options.cracking == "isotropic":
-        raise BadGeometry("`compressive_strength_parallel` requires cracks with a direction, and isotropic cracking has none")
+        raise BadGeometry(
+            "`compressive_strength_parallel` requires cracks with a direction, and isotropic cracking has none: remove this key"
+        )
     return found
 
 
@@ -466,7 +469,7 @@ def values_of(
     tension = [None if s else softening_of(m, options, float(f)) for m, s, f in zip(materials, linear, factors, strict=True)]
     beds = [None if t is None else bedding_of(m) for m, t in zip(materials, tension, strict=True)]
     if options.cracking == "isotropic" and any(bed is not None for bed in beds):
-        raise BadGeometry("`tensile_strength_parallel` requires cracks with a direction, and isotropic cracking has none")
+        raise BadGeometry("`tensile_strength_parallel` requires cracks with a direction, and isotropic cracking has none: remove this key")
     # Across its weakest direction bedded masonry has the teeth of another band, see core.Bedding
     widest = (band if reach is None else reach[:, 1]) * [1.0 if bed is None else bed.stretch()[1] for bed in beds]
     for rows, widths, energy in ((tension, widest, "fracture_energy"), (crushing, band, "crushing_energy")):
@@ -613,7 +616,7 @@ def _edge_load(mesh: Mesh, load: Load, what: str) -> np.ndarray:
         if asked is not None and (asked[0] < mesh.low[axis] - slack or asked[1] > mesh.high[axis] + slack):
             raise BadGeometry(
                 f"{what}: {letter} from {asked[0]:g} to {asked[1]:g} m extends beyond the wall ({mesh.low[axis]:g} to "
-                f"{mesh.high[axis]:g} m), so a part of the load would be lost"
+                f"{mesh.high[axis]:g} m), so a part of the load would be lost: give a range within the wall"
             )
     mine = end > begin
     if not mine.any():

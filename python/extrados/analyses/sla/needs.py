@@ -32,7 +32,7 @@ def needs(context: Context, options: Sla) -> Iterator[Need]:
 
 
 def _refuse_stones() -> None:
-    raise Refused("verification by displacement requires a wall without drawn blocks", ("analysis", "verification"))
+    raise Refused("verification by displacement is only for walls without blocks", ("analysis", "verification"))
 
 
 def _places(building: Building, options: Sla) -> None:

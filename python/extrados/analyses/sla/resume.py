@@ -119,7 +119,9 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         apart = float(np.abs(there - here).max())
         if apart > 1e-6 * model.mesh.size:
             raise Refused(
-                f"resume_from: the integration points of the earlier wall are up to {apart:.3g} m away from those of this wall", RESUME
+                f"resume_from: the integration points of the earlier wall are up to {apart:.3g} m away from those of "
+                "this wall; the mesh must be the same",
+                RESUME,
             )
         if len(get["event_point"]) and get["event_point"].max() < 0:
             raise Refused("resume_from: the earlier run was incremental and has no events from which to continue", RESUME)
@@ -137,8 +139,8 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         if event >= 1 and "event_step" in get and get["event_step"][event - 1]:
             first = int(np.argmax(get["event_step"])) + 1
             raise Refused(
-                f"resume_from: event {event} is a step of equilibrium iterations, whose damage has no teeth. The last event "
-                f"before these steps is {first - 1}",
+                f"resume_from: event {event} is a step of equilibrium iterations, whose damage has no teeth. Give at most "
+                f"event {first - 1}, the last event before these steps",
                 ("analysis", "resume_event"),
             )
         earlier = None

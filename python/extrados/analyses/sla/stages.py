@@ -76,7 +76,7 @@ class Supports:
         number = np.full(self.count, -1)
         free = np.flatnonzero(~fixed)
         if not len(free):
-            raise BadGeometry("every node is restrained, so nothing can move")
+            raise BadGeometry("every node is restrained, so nothing can move: remove supports")
         number[free] = np.arange(len(free))
         number[moved] = len(free) + np.arange(len(moved))
         return core.Freedoms(number[self.equation], self.factor, len(moved))
@@ -89,10 +89,10 @@ class Supports:
             nodes = self.model.mesh.nodes_at(part, f"{what}.parts[{i}]")
             at, by = self.equation[nodes, AXES[load.direction]], part.ratio / self.factor[nodes, AXES[load.direction]]
             if (np.isfinite(rate[at]) & (rate[at] != by)).any():
-                raise BadGeometry(f"{what}: two parts of the displacement have a node in common, or nodes that are tied")
+                raise BadGeometry(f"{what}: two parts of the displacement move the same node, or nodes that are tied together")
             rate[at] = by
         if not np.nan_to_num(rate).any():
-            raise BadGeometry(f"{what}: every `ratio` is 0, so nothing moves")
+            raise BadGeometry(f"{what}: every `ratio` is 0, so nothing moves: give a `ratio` other than 0")
         return rate
 
 
@@ -219,7 +219,7 @@ def _prepare(
     else:
         reference = nodal_forces(mesh, stage.reference, f"{what}.reference")
         if not (~wall.fixed[supports.equation] & (reference != 0.0)).any():
-            raise BadGeometry(f"{what}: the reference load acts only on nodes that are restrained")
+            raise BadGeometry(f"{what}: the reference load acts only on nodes that are restrained: load other nodes")
     moved = np.flatnonzero(wall.fixed & ((value != 0.0) | (rate != 0.0)))
     unit = 1.0 if stage.moves else resultant(reference)
     own = options.model_copy(

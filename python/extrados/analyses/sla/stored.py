@@ -28,10 +28,7 @@ def mesh_arrays(model: SlaModel) -> dict[str, Array]:
     band = np.concatenate([np.repeat(h, n) for h, n in zip(model.bands, per, strict=True)])
     owner = np.repeat(np.arange(model.mesh.elements()), np.repeat(per, [len(g.connect) for g in model.mesh.groups]))
     arrays["point_element"] = Array(
-        owner,
-        ("points",),
-        "",
-        "number of the element to which the integration point belongs, counted from 0 through the groups of elements",
+        owner, ("points",), "", "number of the element of each integration point, counted from 0 over all groups of elements"
     )
     arrays["point_band"] = Array(band, ("points",), "m", "width of the crack band before the integration point cracks")
     if model.mesh.has_joints:
@@ -53,18 +50,11 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
     columns = {
         "load": (curve.force(unit), "N", "load in the chosen sense"),
         "displacement": (e.monitors[:, 0], "m", "control displacement"),
-        "limit_t": (limits[0], "N", "least of the upper limits of the load multiplier"),
-        "limit_c": (limits[1], "N", "greatest of the lower limits of the load multiplier"),
+        "limit_t": (limits[0], "N", "upper limit of the load: least of the limits of all integration points"),
+        "limit_c": (limits[1], "N", "lower limit of the load: greatest of the limits of all integration points"),
         "stored": (e.stored, "J", "elastic energy"),
         "external": (e.external, "J", "work of all loads, if displacements change linearly between events"),
-        "lost": (
-            e.lost,
-            "J",
-            (
-                "part of the work of all loads that is not stored as energy; it may decrease, because events "
-                "without equilibrium are not states"
-            ),
-        ),
+        "lost": (e.lost, "J", "work of all loads that is not stored as elastic energy; it may decrease at events without equilibrium"),
         "dissipated": (curve.dissipated, "J", "energy dissipated from one equilibrium state to the next; it never decreases"),
         "crack": (e.crack, "J", "area of the teeth passed"),
         "scale": (e.scale, "", "applied share of all loads; below 1 after all loads were reduced together"),
@@ -80,7 +70,10 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
     )
     state, out = curve.judged
     result.arrays[f"{prefix}event_state"] = Array(
-        np.where(out, -1, state).astype(np.int8), dim, "", "1: state of the structure, -1: displacements out of range, 0: neither"
+        np.where(out, -1, state).astype(np.int8),
+        dim,
+        "",
+        "1: valid equilibrium state, 0: no valid state, -1: displacement or load out of range",
     )
     if not prefix:
         for name in ("damage_start", "damage_end"):
@@ -136,8 +129,8 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
             "angle": ("rad", "direction of the normal of the first crack"),
             "stress_1": ("Pa", "greater principal stress"),
             "stress_2": ("Pa", "lesser principal stress"),
-            "ratio_n": ("", "remaining stiffness across the first crack"),
-            "ratio_s": ("", "remaining stiffness across the second crack"),
+            "ratio_n": ("", "ratio of remaining to initial stiffness across the first crack"),
+            "ratio_s": ("", "ratio of remaining to initial stiffness across the second crack"),
             "stress_angle": ("rad", "of stress_1"),
         }.items():
             data = np.stack([point_fields(model, s)[field] for s in states])

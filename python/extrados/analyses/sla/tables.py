@@ -96,7 +96,7 @@ class Stage(Table):
     free: list[Hold] = key(
         [],
         "supports (of the building, or of an earlier stage) that are removed in this stage. Their "
-        "reactions are reduced to zero in proportion",
+        "reactions decrease to zero as lambda increases to 1",
         max_length=100,
     )
     reference: list[Load] = key(
@@ -180,7 +180,7 @@ class CrackOptions(Table):
     )
     ripple: float = key(
         0.05,
-        "half-width of the teeth as a ratio p of the strength; the load is overestimated by up to about p/2. The thesis uses 0.1 and 0.2",
+        "half-width p of the teeth, divided by the strength; the load is overestimated by up to about p/2. The thesis uses 0.1 and 0.2",
         source="thesis 4.2",
         ge=0.005,
         le=0.5,
@@ -189,8 +189,8 @@ class CrackOptions(Table):
     crack_band: Length | None = key(None, "width h of the crack band; default: by `crack_band_rule`", gt=0)
     crack_band_rule: Literal["projected", "extent", "area"] = key(
         "projected",
-        "rule for the width of the crack band. projected: the width of a row of elements across the crack; extent: that of "
-        "the element, for cracks askew to the mesh that open every element on their way; area: the "
+        "rule for the width of the crack band. projected: the width of a row of elements across the crack; extent: the "
+        "extent of the element across the crack, for cracks askew to the mesh that open every element on their way; area: the "
         "rule of the thesis, sqrt(2 A) for linear and sqrt(A) for quadratic elements of area A",
     )
     cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
@@ -347,7 +347,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         "method after an event for which no multiplier of loads B is admissible at all points. "
         '"continue": equilibrium iterations in displacement control (for rotating cracks without bed '
         'joints, bars and joints; otherwise load-unload). "load-unload": loads A remain, and the '
-        'greatest lower limit decides. "proportional": all loads of the last equilibrium state are '
+        'point with the greatest lower limit of lambda is damaged. "proportional": all loads of the last equilibrium state are '
         'reduced together (intermittent proportional loading). "force-release": the force that a tooth '
         "releases acts on the other points before the load increases again",
         source="thesis 4.3.1; Pari, Hendriks and Rots 2020; Elias, Frantik and Vorechovsky 2010",
@@ -361,7 +361,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         source="Oliver, Huespe and Cante 2008; Gutierrez 2004",
     )
     algorithm: Literal["update", "refactor"] = key(
-        "update", "matrix factor at each event. update: the factor is updated; refactor: the matrix is factorised again"
+        "update", "factorised stiffness matrix at each event. update: the factor is updated; refactor: the matrix is factorised again"
     )
     states: list[Annotated[int, Field(ge=1)]] = key(
         [], "numbers of the events whose state is saved, besides the peak and the last event", max_length=200
@@ -378,7 +378,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         max_length=10,
     )
     seeds: list[int] = key(
-        [], "seeds of the random mesh and strength with which the analysis is repeated, for a scatter band", max_length=200
+        [], "seeds for repetitions of the analysis with other random meshes and strengths, for a scatter band", max_length=200
     )
     strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)
     strength_length: Length | None = key(None, "correlation length of the random strength; default: one element", gt=0)
@@ -392,7 +392,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         None, "results folder of an earlier run of the same wall, from which this run continues; inside the folder of the deck, or absolute"
     )
     resume_event: int | None = key(
-        None, "number of the event of the earlier run before which this run continues; default: the last event", ge=1
+        None, "number of an event of the earlier run: this run continues from the damage before that event; default: the last event", ge=1
     )
 
     @field_validator("directions")
@@ -428,7 +428,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         if len(set(self.seeds)) < len(self.seeds):
             raise ValueError("seeds: a seed occurs twice, which would give the same wall again")
         if self.shear_retention is not None and self.cracking == "isotropic":
-            raise ValueError("isotropic cracking has no shear retention")
+            raise ValueError("isotropic cracking has no shear retention: remove `shear_retention`")
         if self.solution == "incremental" and (self.without_equilibrium not in ("continue", "load-unload") or self.states or self.budget):
             raise ValueError("an incremental solution has no events: remove `without_equilibrium`, `states` and `budget`")
         if self.verification.model_fields_set and not self.by_inertia:
