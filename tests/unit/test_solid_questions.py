@@ -165,7 +165,7 @@ def test_the_thrust_on_the_ground_of_one_block_is_its_push() -> None:
     ("section", "words"),
     [
         ({"name": "a", "x": 99.0}, "section 'a': its cut crosses no contact between two blocks"),
-        ({"name": "a", "joints": ["nowhere"]}, "names no contact 'nowhere'"),
+        ({"name": "a", "joints": ["nowhere"]}, "no contact has the name 'nowhere'"),
     ],
 )
 def test_wrong_sections_are_refused(section: dict[str, Any], words: str) -> None:

@@ -78,7 +78,7 @@ def run(context: Context, options: ThrustNetwork) -> Result:
     more = "`lines` and `meridians`" if form == "radial" else "`lines`"
     result.warnings += [
         (
-            f"between the nodes, the bars of {ABOUT[aim]} pass outside the blocks by up to {1000.0 * by:.3g} mm "
+            f"between the nodes, the branches of {ABOUT[aim]} pass outside the blocks by up to {1000.0 * by:.3g} mm "
             f"({100.0 * by / r.thickness_m:.2g} % of the thickness): give more {more}"
         )
         for aim, by in away.items()

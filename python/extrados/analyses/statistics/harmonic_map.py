@@ -65,7 +65,7 @@ def run(context: Context, options: HarmonicMap) -> Result:
         if handed:
             result.warnings.append(
                 f"{handed} of {outcome.size} motions of the map were continued with rigid contacts: joints slide "
-                f"in {conditions.sliding}, and hinges form at other joints in {conditions.hinges_elsewhere}."
+                f"in {conditions.sliding}, and hinges form outside the mechanism in {conditions.hinges_elsewhere}."
             )
     outcome = outcome.reshape(shape)
     over = outcome == COLLAPSE
