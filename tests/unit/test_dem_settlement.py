@@ -137,7 +137,7 @@ def test_springs_that_come_to_no_end_accuse_nothing(tmp_path, monkeypatch, space
     monkeypatch.setattr(standing, "SETTLING", 16)
     found = answered(tmp_path, keystone(-0.3), analysis=f'solver = "nonsmooth"\n{space}')
     assert found.status == "ok" and "jammed" not in found.answer
-    assert any("does not come to rest in 16 steps" in text for text in found.warnings)
+    assert any("did not come to rest in 16 steps" in text for text in found.warnings)
 
 
 @pytest.mark.parametrize(

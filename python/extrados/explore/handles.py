@@ -249,7 +249,7 @@ def _brickwork(s: Any, _: Assembly) -> Iterator[Handle]:
     )
     yield _length(
         "unit_height",
-        "Height of a unit (brick or block). The handle changes the height of the wall",
+        "Height of a unit (brick or block). The handle changes the height of the wall, not the number of courses",
         0.5 * wide,
         high,
         s.unit_height,

@@ -237,8 +237,10 @@ class Tilt(KindResults):
     right_aisle_span_m: float = maybe("clear span of the right aisle", "m")
     duality_gap: float = fact("greatest difference between the lower bound (from equilibrium) and the upper bound (from a mechanism)", "g")
     fracture: Fracture = maybe("results of the collapse towards +x with the leeward buttress cracked")
-    non_dilatant: NonDilatant = maybe("sliding without dilatancy, collapse towards +x: bounds and certificate")
-    non_dilatant_opposite: NonDilatant = maybe("sliding without dilatancy, collapse towards -x: bounds and certificate")
+    non_dilatant: NonDilatant = maybe("collapse towards +x by sliding without dilatancy: bounds of the acceleration, with a certificate")
+    non_dilatant_opposite: NonDilatant = maybe(
+        "collapse towards -x by sliding without dilatancy: bounds of the acceleration, with a certificate"
+    )
 
     def interval(self, opposite: bool = False) -> tuple[float | None, float]:
         """Least and greatest collapse acceleration [g] to +x, or to -x: equal where no pressed joint slides, the least None

@@ -156,7 +156,9 @@ class ShakeTable(KindResults):
     played_displacement_m: float = maybe("greatest displacement of the scaled motion", "m")
     played_velocity_m_s: float = maybe("greatest velocity of the scaled motion", "m/s")
     played_acceleration_g: float = maybe("greatest acceleration of the scaled motion", "g")
-    rest_error_m: float = maybe("displacement that remains at the start and the end of the drive signal", "m")
+    rest_error_m: float = maybe(
+        "greatest displacement of the drive signal at its start and its end; 0 for a table that starts and ends in its zero position", "m"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The share of its limits that the motion needs; about the table, not a building."""

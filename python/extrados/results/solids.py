@@ -116,7 +116,9 @@ class SolidTilt(KindResults):
         "g",
     )
     collapse_acceleration_load_path_opposite_g: float = maybe(
-        "design value of the collapse acceleration opposite to the load direction, if contacts slide", "g"
+        "design value of the collapse acceleration opposite to the load direction, if contacts slide: the lowest of the load paths with "
+        "elastic joints",
+        "g",
     )
     collapse_acceleration_non_associated_g: float = maybe(
         "collapse acceleration along the load direction for sliding without dilatancy: the lowest of the certified states that were found",
@@ -141,7 +143,7 @@ class SolidTilt(KindResults):
         "scatter of the last iterations of the face law: greatest minus least value (fixed-point iteration)", "g"
     )
     face_law_reason: str = maybe("reason why the face law gives no value")
-    ties: list[TieForce] = maybe("forces of ties, chains and hoops at the collapse acceleration; for bonded ones, of each segment")
+    ties: list[TieForce] = maybe("force of each tie, chain and hoop at the collapse acceleration; if bonded, of each of its segments")
     crushing_contacts: int = maybe("number of contacts that crush in the mechanism; only given with a compressive strength")
     collapse_acceleration_dry_g: float = maybe(
         'collapse acceleration along the load direction without mortar, given if `mortar` = "ductile"; 0 if the blocks then cannot stand',

@@ -63,8 +63,8 @@ class Intervention(ResultModel):
     required_N: float | None = maybe("least yield force of the tie that meets the target; null if none does", "N")
     depth_m: float = maybe("depth out of plane that one tie serves", "m")
     greatest_capacity: float | None = fact(
-        "best value of the target quantity with any of the sizes (greatest value; for a probability, the least), in the unit of the "
-        "target; null if no collapse mechanism remains, or without a result"
+        "best value of the target quantity over all sizes (the greatest; for a probability, the least), in the unit of the target; null "
+        "if no collapse mechanism remains or there is no result"
     )
     capacity_after: float | None = fact("value of the target quantity with the required size, in the unit of the target")
     safety_factor_after: float | None = fact("safety factor with the required size: value divided by demand")

@@ -33,7 +33,7 @@ def _tell_finer(work: Work, names: set[str]) -> None:
             f"Strategies that contradict each other were run again with finer settings: {' and '.join(ran)}."
             if ran
             else (
-                "No finer check was run for these strategies, which contradict each other: "
+                "The results of these strategies contradict each other, and none was run again with finer settings: "
                 f"{' and '.join(sorted(work.rows[n].label for n in names))}."
             )
         )

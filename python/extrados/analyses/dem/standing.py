@@ -109,10 +109,7 @@ def jammed(model: Model | SolidModel, threads: int) -> tuple[str, str]:
     try:
         checked(found, model)
     except Restless:
-        return (
-            "",
-            (f"with springs the structure does not come to rest in {SETTLING} steps, so its equilibrium may depend on jammed blocks"),
-        )
+        return ("", f"a check with springs did not come to rest in {SETTLING} steps, so the equilibrium found may depend on jammed blocks")
     except Falls:
         answer = "The initial equilibrium may depend on jammed blocks: with springs, the structure collapses while it settles."
         return answer, f"{JAMMED} {model.body_names[found.blamed[0]]} falls"

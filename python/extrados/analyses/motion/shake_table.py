@@ -128,8 +128,7 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
     worst = max(fits, key=lambda f: max(f.stroke, f.flow, f.force))
     result.answer += (
         f" {motion.name} exceeds the limits: the motion requires {100 * r['peak_displacement_m']:.3g} cm and "
-        f"{100 * r['peak_velocity_m_s']:.3g} cm/s, {max(worst.stroke, worst.flow, worst.force):.2f} times the limit of "
-        f"{worst.governing}. To fit the "
-        f"motion, scale time by {chosen.time_scale:.3f} and acceleration by {chosen.amplitude:.3f}."
+        f"{100 * r['peak_velocity_m_s']:.3g} cm/s. The limit of {worst.governing} is exceeded most, "
+        f"{max(worst.stroke, worst.flow, worst.force):.2f} times. To fit the motion, scale time by {chosen.time_scale:.3f} and acceleration by {chosen.amplitude:.3f}."
     )
     return r

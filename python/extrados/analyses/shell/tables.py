@@ -211,7 +211,8 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     )
     variants: list[Variant] = key(
         [],
-        "other assumptions with which the run in the first sense is repeated, for a band of capacity curves, [[analysis.variants]]",
+        "sets of changed assumptions, with each of which the run in the first sense is repeated: a band of capacity curves, "
+        "[[analysis.variants]]",
         max_length=50,
     )
     #: What the events of sla ask for and a push does not offer

@@ -589,10 +589,9 @@ class _Run:
         lost = np.flatnonzero(~events.equilibrium)
         if self.options.without_equilibrium == "continue" and not (self.goes_on or self.model.mesh.has_joints) and len(lost):
             curve.warnings.append(
-                f"Equilibrium under the constant loads is lost at event {lost[0] + 1}. Equilibrium iterations can "
-                "follow only rotating cracks of isotropic masonry (no bed joints, lateral reduction, "
-                "confinement, shear retention or bars). The later events are therefore calculated with "
-                '"load-unload".'
+                f"Equilibrium under the constant loads is lost at event {lost[0] + 1}. The later events are calculated "
+                'with "load-unload", because equilibrium iterations require rotating cracks of isotropic masonry, without bed joints, '
+                "lateral reduction, confinement, shear retention and bars."
             )
         if self.options.continuation in FROM_THE_START and not self.goes_on:
             curve.warnings.append(

@@ -67,7 +67,7 @@ def read_measured(context: Context, file: str) -> Measured:
     least, greatest = (columns.get(name, columns.get("load")) for name in ("least", "greatest"))
     assert least is not None and greatest is not None  # the head of the file has them
     if (least > greatest).any():
-        raise Refused(f"{file}: in one line, the least load exceeds the greatest load", KEY)
+        raise Refused(f"{file}: there is a line in which `least` exceeds `greatest`", KEY)
     return Measured(displacement, least, greatest)
 
 

@@ -432,7 +432,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         if self.solution == "incremental" and (self.without_equilibrium not in ("continue", "load-unload") or self.states or self.budget):
             raise ValueError("an incremental solution has no events: remove `without_equilibrium`, `states` and `budget`")
         if self.verification.model_fields_set and not self.by_inertia:
-            raise ValueError("the key `verification` requires one horizontal load by the masses only, without stages")
+            raise ValueError("the key `verification` requires that the horizontal force of the masses is the only load, without stages")
         if self.verification.shape == "mode":
             raise ValueError('verification: shape = "mode" is only for buildings: remove `shape`')
         return self

@@ -247,7 +247,7 @@ def _answer(seen: Stripes, fits: dict[str, Lognormal], name: str, unit: str, wor
         fit = fits[stage]
         text = f"{fit.median:.4g}{' ' + unit if unit else ''}, dispersion {fit.dispersion:.3f}"
         low, high = r.get(f"{stage}median_interval", (np.nan, np.nan))
-        return text + (f" (median between {low:.4g} and {high:.4g} at {100 * confidence:g} %)" if np.isfinite(low) else "")
+        return text + (f" ({100 * confidence:g} % confidence interval of the median: {low:.4g} to {high:.4g})" if np.isfinite(low) else "")
 
     motions, n = seen.outcome.shape
     whole = int(seen.valid.all(axis=1).sum())

@@ -230,7 +230,10 @@ class Resonance(RockingTable):
     )
     half_cycles: int = key(40, "greatest number of half cycles", ge=1, le=400)
     impulse_amplitude: Acceleration | None = key(
-        None, "amplitude of the impulses of Fig. 6-4; default: half of the uplift acceleration", gt=0, source="thesis 6.2.3"
+        None,
+        "amplitude of the sine impulses that supply energy to free rocking; default: half of the uplift acceleration",
+        gt=0,
+        source="thesis 6.2.3",
     )
 
 
@@ -242,10 +245,7 @@ class RockingSpectrum(RockingTable):
     view: ClassVar = ""
     needs_motion: ClassVar = True
     periods: list[Time] | None = key(
-        None,
-        "periods 2 pi/p (for arches, 2 pi times their natural time); default: 60 values from 0.2 to 8 s",
-        min_length=1,
-        max_length=5000,
+        None, "periods 2 pi/p (for arches, 2 pi sqrt(R/g)); default: 60 values from 0.2 to 8 s", min_length=1, max_length=5000
     )
     slenderness: list[Angle] = key([10.0, 15.0, 20.0, 25.0], "alpha", min_length=1, max_length=50)
 

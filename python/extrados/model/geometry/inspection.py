@@ -126,8 +126,8 @@ class Inspection:
             heights = sorted({round(y, 4) for _, y in self.levels})
             named = ", ".join(f"'{self.names[i]}'" for i, _ in self.levels[:SHOWN])
             found.append(
-                f"no support is below the horizontal soles of {named}{(' and others' if len(self.levels) > SHOWN else '')} at y = "
-                f"{', '.join(f'{y:.4g}' for y in heights)} m. To make supports of these soles, give `foundation_levels`"
+                f"the horizontal soles of {named}{(' and others' if len(self.levels) > SHOWN else '')} at y = "
+                f"{', '.join(f'{y:.4g}' for y in heights)} m have no support. If they stand on the ground, give `foundation_levels`"
             )
         return found
 

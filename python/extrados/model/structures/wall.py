@@ -148,7 +148,7 @@ class Wall(Bonded, Spatial):
     legs: list[Leg] = key(
         about="straight parts (legs) of the wall in order, each at a right angle to the previous one", min_length=1, max_length=200
     )
-    closed: bool = key(False, "whether the last leg meets the first one, as around a courtyard; all corners are then left-hand corners")
+    closed: bool = key(False, "whether the last leg ends at the start of the first one, with a left-hand corner, as around a courtyard")
     begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course at a free end of the wall: whole or half")
 
     @model_validator(mode="after")
