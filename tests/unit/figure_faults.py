@@ -70,8 +70,7 @@ class Watch:
         self.found: dict[str, list[str]] = {}
 
     def __call__(self, fig: Figure, target: Path, name: str) -> str:
-        fig.get_layout_engine().execute(fig)
-        fig.set_layout_engine("none")
+        style.lay_out(fig)
         style._spread(fig)
         self.found[name] = faults(fig)
         return name

@@ -274,7 +274,7 @@ def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: 
     with style.figure(8.0, 3.6, columns=2, width_ratios=[2.4, 1]) as (fig, (over_time, along)):
         joints = np.arange(friction.shape[1])
         mesh = over_time.pcolormesh(t[part], joints, shown.T, cmap="YlOrBr", vmin=0.0, vmax=1.0, shading="nearest", rasterized=True)
-        fig.colorbar(mesh, ax=over_time, label="required coefficient of friction (darkest colour: 1 or more)")
+        fig.colorbar(mesh, ax=over_time, label="required friction (darkest: 1 or more)")
         over_time.set_xlabel("time [s]")
         over_time.set_ylabel("joint")
         over_time.grid(False)
@@ -285,7 +285,7 @@ def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: 
             style.numbers(ax.yaxis)
         return style.save(
             fig, folder, f"{name}-friction"
-        ), "Coefficient of friction required at the joints during rocking. White: the structure is at rest."
+        ), "Coefficient of friction required at the joints during rocking. Darkest colour: 1 or more. White: the structure is at rest."
 
 
 def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:

@@ -158,14 +158,14 @@ def _annual(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         right.axvline(r.median, color=style.HINGE, linestyle="--", label=f"median of collapse, {r.median:.3g}")
         right.set_xscale("log")
         right.set_ylim(bottom=0.0)
-        right.set_ylabel("contribution to the rate of collapse per ln(intensity) [1/year]")
+        right.set_ylabel("collapse rate per ln(intensity) [1/year]")
         right.set_title("Intensities of collapse")
         right.legend()
         for ax in (left, right):
             ax.set_xlabel(_axis(r))
         return style.save(fig, folder, f"{name}-annual"), (
             f"Left: hazard curve, and annual rate of collapse with its {100 * r.confidence:g} % confidence "
-            "band. Right: contributions of the intensities to this rate, which is the area under the curve."
+            "band. Right: contribution of each intensity to this rate, per unit of ln(intensity); the area under the curve is the rate."
         )
 
 

@@ -87,7 +87,9 @@ def lay_out(fig: Figure) -> None:
     """Settle the places of axes and labels once and for all."""
     engine = fig.get_layout_engine()
     if engine is not None:
-        engine.execute(fig)
+        # Axes of equal scales change their size when they are placed: only a second layout leaves room for their titles
+        for _ in range(2 if any(ax.get_aspect() != "auto" for ax in fig.axes) else 1):
+            engine.execute(fig)
     fig.set_layout_engine("none")
 
 
