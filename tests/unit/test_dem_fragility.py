@@ -116,6 +116,23 @@ def test_refusals_name_the_key_and_the_cure(more: str, words: str, tmp_path) -> 
     assert words in reason
 
 
+def test_joined_blocks_have_no_values_of_their_own(tmp_path) -> None:
+    text = ARCH + "[joints]\nfriction = 2.0\n" + MANY + KIND + 'merge = "three-bars"\nlevels = [0.3]\ncount = 1\n'
+    for name in ("density", "imperfection"):
+        assert "joins the blocks" in found(tmp_path, f"{text}uncertain = {{ {name} = 0.02 }}\n").analyses[0]["reason"]
+
+
+def test_all_lengths_of_a_structure_have_its_size() -> None:
+    """Corners that are worn, also of blocks drawn anew, and the floor."""
+    text = BLOCK + "worn_corners = 0.05\n" + MANY + KIND + 'intensity = "size"\nlevels = [1, 4]\nfloor = -0.5\n'
+    deck = read_text(f"{text}uncertain = {{ density = 0.05 }}\n".encode())
+    sample = Sample(Context(deck).building, deck.analyses[0], np.full((1, 1), 0.3))
+    one, other = (sample.model(0, size).rigid for size in (1.0, 4.0))
+    assert len(one.parts) == len(other.parts) and len(one.parts[0]) > 4
+    for small, large in zip(one.parts, other.parts, strict=True):
+        assert large == pytest.approx(4.0 * small, rel=1e-9, abs=1e-9)
+
+
 def test_two_equal_levels_are_refused() -> None:
     with pytest.raises(DeckError, match="twice"):
         read_text((BLOCK + MANY + KIND + "levels = [0.3, 0.3]\n").encode())
