@@ -2,6 +2,7 @@
 
 from typing import Literal
 
+from extrados.results.dem import Convergence
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.rocking import Conditions, RockingOutcome
 from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
@@ -331,9 +332,10 @@ class DemFragility(LevelShares):
     censored: list[int] = fact("runs without a result because blocks still move at their end, at each level; included in `failed`")
     collapse_probability_bounds: list[list[float | None]] = fact(
         "bounds of the share of motions that cause collapse, at each level: if none of the `censored` runs ends with collapse, "
-        "and if all do"
+        "and if all do; runs that fail for another reason are not counted"
     )
     unstable: int = fact("number of sampled buildings that collapse under their own weight; they count as collapsed")
+    convergence: Convergence | None = maybe("accuracy of the contact solver over all runs (rigid contacts only)")
     mean_peak_displacement_ratio: list[float | None] = fact(
         "mean ratio of the peak displacement of a block to the displacement that counts as collapse, at each level; collapse counts as 1"
     )
