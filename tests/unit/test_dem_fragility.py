@@ -16,6 +16,7 @@ from extrados.analyses.motion_source import source_of
 from extrados.analyses.statistics.uncertain import sobol_draws
 from extrados.decks.reader import DeckError, read_text
 from extrados.limit.programme import LimitAnalysis
+from extrados.show.statistics import draw_fragility
 
 BLOCK = '[structure]\nkind = "block"\nwidth = 0.6\nheight = 2.4\n[joints]\nfriction = 2.0\n'
 ARCH = '[structure]\nkind = "arch"\nradius = 10.0\nthickness = 1.1\nembrace = 180\nvoussoirs = 11\n'
@@ -77,6 +78,17 @@ def test_buildings_that_cannot_stand_collapse_under_every_motion(tmp_path) -> No
     outcome = run.array("dem-fragility", "outcome")
     assert (outcome[np.array(falls)] == 2).all()
     assert not (outcome[~np.array(falls)] == 2).any()
+
+
+def test_sizes_are_no_levels_of_a_motion(tmp_path) -> None:
+    """Larger blocks survive motions that overturn smaller ones: this is no anomaly, and the largest size is not the worst."""
+    run = found(tmp_path, BLOCK + SINE.format(period=0.8) + KIND + 'intensity = "size"\nlevels = [0.1, 4]\nsettle = 15\n')
+    (one,) = run.analyses
+    assert run["dem-fragility"]["collapse_probability"] == [1.0, 0.0] and run["dem-fragility"]["motions_that_collapse"] == 1
+    assert run["dem-fragility"].resurrections is None and "incremental_risen" not in run.arrays["dem-fragility"]
+    assert "100 % at 0.1 times the size, 0 % at 4 times the size" in one["verdict"]["statement"]
+    said = dict(draw_fragility(run, "dem-fragility", tmp_path))
+    assert not any("higher level" in text for text in said.values())
 
 
 def test_bars_of_an_arch_that_cannot_stand_collapse() -> None:

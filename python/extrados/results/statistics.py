@@ -7,6 +7,9 @@ from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.rocking import Conditions, RockingOutcome
 from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
 
+#: Name of the levels that are sizes of the structure
+SIZE_FACTOR = "factor of all lengths"
+
 
 class Sensitivity(ResultModel):
     """Sobol indices of one uncertain value: its own share of the variance, and that of all in which it is involved."""
@@ -240,7 +243,7 @@ class LevelShares(Annual):
         "p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true"
     )
     motions_that_collapse: int = fact("number of motions that cause collapse at one or more levels")
-    resurrections: int = fact("number of motions that cause collapse at one level but not at a higher level")
+    resurrections: int = maybe("number of motions that cause collapse at one level but not at a higher level (levels of motions only)")
 
     def judged_over_levels(self, violated: list[str]) -> Verdict:
         """The fitted median is the capacity; levels are questions, not a demand."""
@@ -361,7 +364,16 @@ class DemFragility(LevelShares):
     def judged(self, demand: Demand) -> Verdict:
         """The fitted median is the capacity; censored runs are a doubt."""
         many = sum(self.censored)
-        return self.judged_over_levels([f"Blocks still move at the end of {many} runs, so these runs have no outcome."] if many else [])
+        doubts = [f"Blocks still move at the end of {many} runs, so these runs have no outcome."] if many else []
+        if self.intensity == SIZE_FACTOR and any(self.count):
+            shares = (
+                f"{100.0 * share:.3g} % at {level:g} times the size"
+                for level, share in zip(self.levels, self.collapse_probability, strict=True)
+                if share is not None
+            )
+            text = f"Share of the motions that cause collapse: {', '.join(shares)}."
+            return judge(text, None, None, "", "not-applicable", violated=doubts)
+        return self.judged_over_levels(doubts)
 
 
 class OverDurations(KindResults):
