@@ -253,7 +253,9 @@ class BlocksTilt(KindResults):
 class DemTilt(BlocksTilt):
     """dem: the constant acceleration that brings the blocks down."""
 
-    load_direction: Literal["+x"] = fact("direction of the load (+x or -x) for which `hinges` are given")
+    load_direction: Literal["+x"] = fact(
+        "direction of the load for which `hinges`, `peak_rotation_rad` and `peak_slip_m` are given: always +x"
+    )
     hinges: list[NamedHinge] = fact("hinges of the collapse mechanism towards +x")
     hinges_opposite: list[NamedHinge] = fact("hinges of the collapse mechanism towards -x")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
