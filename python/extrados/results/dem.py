@@ -140,7 +140,8 @@ class BlocksRun(KindResults):
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )
     edge_stress_at_rest_Pa: float | None = maybe(
-        "greatest compressive stress at an edge or corner of a joint at rest under self-weight: linear pressure without tension; "
+        "greatest compressive stress at an edge or corner of a joint at the start of the motion (self-weight, and with the initial "
+        "rotation if there is one): linear pressure without tension; "
         "null if an edge or a corner alone carries the load",
         "Pa",
     )
