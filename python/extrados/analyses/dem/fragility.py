@@ -102,9 +102,11 @@ class Ensemble:
 
     def _cannot_stand(self, model: Model | SolidModel, motion: int, size: float) -> bool:
         """Whether limit analysis proves collapse under the own weight of a building that does not come to rest."""
-        proof_of = proof_of_section if isinstance(model, Model) else proof_of_solids
+        building = self.sample.building_of(motion, size)
         try:
-            return proof_of(self.sample.building_of(motion, size)) is not None
+            if isinstance(model, Model):
+                return proof_of_section(building, model.strength or None) is not None
+            return proof_of_solids(building) is not None
         except NoAnswer:
             return False
 
