@@ -233,3 +233,10 @@ def test_the_design_value_is_of_certified_paths() -> None:
 
     assert results.design_value([path(0.2, False), path(0.3, True), path(0.25, True), path(None, False)]) == 0.25
     assert results.design_value([path(0.2, False)]) is None and results.design_value(None) is None
+
+
+def test_no_path_without_a_live_load() -> None:
+    limit = LimitAnalysis(make_deck({"structure": WALL, "analysis": {"kind": "tilt"}}).building.blocks(), 0.65, associated=False)
+    points = limit.contact_points(1)
+    with pytest.raises(NoAnswer, match="no live load"):
+        LoadPath(replace(points, live=np.zeros_like(points.live)), 0.5)
