@@ -9,9 +9,10 @@ import extrados
 from extrados.analyses.context import Context
 from extrados.analyses.dem import fragility
 from extrados.analyses.dem import model as dem_model
-from extrados.analyses.dem.fragility import BRIEF, Ensemble, follow
+from extrados.analyses.dem.fragility import Ensemble, follow
 from extrados.analyses.dem.measures import Collapse
 from extrados.analyses.dem.sampled import Sample
+from extrados.analyses.dem.standing import BRIEF
 from extrados.analyses.motion_source import source_of
 from extrados.analyses.statistics.uncertain import sobol_draws
 from extrados.decks.reader import DeckError, read_text

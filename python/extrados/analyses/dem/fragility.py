@@ -16,7 +16,7 @@ from extrados.analyses.dem.sampled import Sample, make_blocks
 from extrados.analyses.dem.seen import BlocksSeen, Seen
 from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.solid_model import SolidModel
-from extrados.analyses.dem.standing import compared, proof_of_section, proof_of_solids
+from extrados.analyses.dem.standing import BRIEF, compared, proof_of_section, proof_of_solids
 from extrados.analyses.dem.tables import DemFragility
 from extrados.analyses.dem.trial import domain_of
 from extrados.analyses.motion_source import ListSource, Source, source_of
@@ -39,8 +39,6 @@ from extrados.schema.constants import GRAVITY
 
 #: Motions without a count of their own
 MOTIONS = 100
-#: s: a run that ends as it has settled
-BRIEF = 1e-6
 OUTCOMES = {"at-rest": NO_HINGING, "slid": NO_HINGING, "rocked": RECOVERY, "collapse": COLLAPSE}
 WORDS = np.array(["at rest or slid", "rocked", "collapse", "failed"])
 CENSORED = "blocks still move at the end of the run: give a longer `settle`"

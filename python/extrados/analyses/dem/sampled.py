@@ -12,7 +12,7 @@ from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.solid_model import SolidModel, make_solid_model
 from extrados.analyses.dem.tables import DemFragility
 from extrados.analyses.needs import stones_of
-from extrados.analyses.statistics.uncertain import BY_STONE, drawn_masses, drawn_stones, factors_of
+from extrados.analyses.statistics.uncertain import BY_STONE, drawn_masses, drawn_stones, factors_of, refuse_mixed_friction
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import Assembly
 from extrados.schema.quantities import unit_of
@@ -138,12 +138,7 @@ def refuse_uncertain(building: Building, options: DemFragility) -> None:
             raise Refused('rigid contacts have no springs: remove this value, or give solver = "compliant"', key)
         if name not in known:
             raise Refused(f"this {structure.word} has no such value; its values are {', '.join(known)}", key)
-    joints = building.joints
-    if "friction" in options.uncertain and (joints.coefficient is None or any(t.friction is not None for t in joints.types)):
-        raise Refused(
-            "friction varies for all joints together: give [joints] friction as one number, and no friction of joint types",
-            ("analysis", "uncertain", "friction"),
-        )
+    refuse_mixed_friction(building, options.uncertain)
     if options.intensity == "size":
         if getattr(structure, "file", None) is not None:
             raise Refused(
