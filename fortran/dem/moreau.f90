@@ -6,7 +6,7 @@ module dem_moreau
    use dem_contacts, only : contact_pair, overlap, measure_overlap, choose_edges
    use dem_law, only : point_force, point_frame, frame_of, hand_over, find_relative_velocity
    use dem_model, only : block_model, predict_velocity, prepare_step, pull_ties
-   use dem_rigid, only : bear_mortar, gives_way, find_reversal, has_mortar, number_bodies, parting, &
+   use dem_rigid, only : bear_mortar, gives_way, find_reversal, has_mortar, mortar_fails, number_bodies, parting, &
       solve_step, steady
    use nonsmooth_impulses, only : along_normal, along_tangent, find_point_rate, impulse_problem, in_plane, &
       problem_room
@@ -234,7 +234,8 @@ contains
                   force%shear = (problem%impulse(along_tangent, point(i)) + pair%point(i)%late) / model%kick
                end if
                pair%point(i)%late = late(i)
-               if (pair%point(i)%bonded) pair%point(i)%bonded = is_held(model, point(i))
+               if (pair%point(i)%bonded) pair%point(i)%bonded = point(i) > 0
+               if (pair%point(i)%bonded) pair%point(i)%bonded = .not. mortar_fails(model%rigid, model%model_clock, point(i))
                associate (was => pair%point(i))
                   if (.not. (was%closed .or. max(abs(force%normal), abs(force%shear)) > 0.0_wp)) cycle
                   frame = frame_of(now, i, a, b)
@@ -275,6 +276,7 @@ contains
          associate (p => model%rigid%problem%impulse(:, point(i)))
             turns(i) = abs(p(along_normal) - model%kick * pair%point(i)%spring_n) &
                < steady * p(along_normal)
+            if (.not. turns(i)) cycle
             held = held + sign(p(along_tangent), old(i) * p(along_tangent))
             bound = bound + model%rigid%problem%friction(point(i)) * p(along_normal)
          end associate

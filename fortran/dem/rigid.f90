@@ -34,7 +34,7 @@ module dem_rigid
    implicit none
    private
    public :: rigid_solver, rigid_setting, set_rigid, forget_effort, walk_effort, suitable_step, number_bodies, &
-      solve_step, parting, has_mortar, bear_mortar, gives_way, find_reversal, wait_for_rest
+      solve_step, parting, has_mortar, bear_mortar, gives_way, mortar_fails, find_reversal, wait_for_rest
 
    real(wp), parameter :: natural = 0.002_wp       !! of the time in which a block falls by its own size
    real(wp), parameter :: unhurried = 0.1_wp       !! the same without inertia
@@ -69,6 +69,7 @@ module dem_rigid
       integer :: open_steps = 0                !! steps that did not converge
       real(wp) :: residual = 0.0_wp            !! greatest violation, over the velocity that gravity gives in a step
       real(wp) :: worst = 0.0_wp               !! time of the step in which it was [s]
+      real(wp) :: error = 0.0_wp               !! greatest violation in the last step [m/s]
    end type rigid_solver
 
 contains
@@ -170,6 +171,7 @@ contains
       solver%steps = solver%steps + 1
       solver%factors = solver%factors + effort%factors
       solver%most_rounds = max(solver%most_rounds, effort%rounds)
+      solver%error = effort%residual
       if (.not. effort%converged) solver%open_steps = solver%open_steps + 1
       if (effort%residual / speed > solver%residual) then
          solver%residual = effort%residual / speed
@@ -231,6 +233,16 @@ contains
       logical :: moves
       moves = norm2(find_point_rate(solver%problem, k)) > at_rest * clock%step * solver%gravity
    end function gives_way
+
+   !> Whether the mortar at a point fails: the point moves by more than the error of the step
+   pure function mortar_fails(solver, clock, k) result(fails)
+      class(rigid_solver), intent(in) :: solver
+      class(model_clock), intent(in) :: clock
+      integer, intent(in) :: k                      !! point
+      logical :: fails
+      fails = gives_way(solver, clock, k)
+      if (fails) fails = norm2(find_point_rate(solver%problem, k)) > solver%error
+   end function mortar_fails
 
    !> Whether sliding stops within a step and starts again in the opposite direction, from the speeds in the last two steps and from
    !> the friction that holds the contact. Over the weight of the step the load is rho, with old = theta (1 + rho) and

@@ -7,7 +7,8 @@
 module dem3_moreau
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
-   use dem_rigid, only : bear_mortar, find_reversal, gives_way, has_mortar, number_bodies, parting, solve_step, steady
+   use dem_rigid, only : bear_mortar, find_reversal, gives_way, has_mortar, mortar_fails, number_bodies, parting, &
+      solve_step, steady
    use dem3_bodies, only : body, cross, turn_freely
    use dem3_dowels, only : place_dowel
    use dem3_law, only : contact_pair, contact_point
@@ -437,7 +438,7 @@ contains
                   force = matmul(frame, model%rigid%problem%impulse(:, number(i))) / model%kick
                end if
                if (point%bonded .and. number(i) > 0) then
-                  point%bonded = .not. gives_way(model%rigid, model%model_clock, number(i))
+                  point%bonded = .not. mortar_fails(model%rigid, model%model_clock, number(i))
                end if
                point%closed = any(abs(force) > 0.0_wp)
                ! Mean force over the position step before, times the velocity that led through it.

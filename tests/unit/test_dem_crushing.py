@@ -64,3 +64,15 @@ def test_crushing_is_refused_by_name(of_dem: str, more: str, why: str) -> None:
     )
     found = extrados.run(tomllib.loads(deck)).results[0]
     assert found.status == "refused" and why in found.reason
+
+
+def test_limit_analysis_proves_that_a_joint_crushes_under_self_weight(tmp_path) -> None:
+    deck = tmp_path / "deck.toml"
+    deck.write_text(
+        '[structure]\nkind = "block"\nwidth = 1\nheight = 4\n[material]\ndensity = 2000\ncompressive_strength = "70 kPa"\n'
+        "[joints]\nfriction = 0.9\nnormal_stiffness = 1e9\nbeta = 1e-3\n"
+        '[[analysis]]\nkind = "dem"\ncrushing = true\nend_time = 0.1\nperturbed = false\n'
+    )
+    (one,) = extrados.run(deck).analyses
+    assert one["verdict"]["outcome"] == "cannot-stand", one
+    assert "more work than crushing" in one["verdict"]["statement"] or "strength" in one["verdict"]["statement"]

@@ -29,13 +29,32 @@ def test_linear_pressure_without_tension(share: float) -> None:
     assert np.trapezoid(pressure * x, x) / force == pytest.approx(share, rel=1e-4)
     rectangle = np.array([[-1.0, -0.5], [1.0, -0.5], [1.0, 0.5], [-1.0, 0.5]])
     corners = corner_stress(rectangle, np.array([6.0]), np.array([[2.0 * share - 1.0, 0.0]]))[0]
-    assert corners == pytest.approx([first, second, second, first], rel=0.01, abs=1e-9)
+    assert corners == pytest.approx([first, second, second, first], rel=1e-6, abs=1e-9)
 
 
 def test_pressure_at_a_corner_alone_has_no_finite_stress() -> None:
     triangle = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     assert np.isinf(corner_stress(triangle, np.array([1.0]), np.array([[0.0, 0.0]]))[0, 0])
     assert edge_stress(np.array([1.0]), np.array([1.0]))[0].tolist() == [0.0, np.inf]
+
+
+def test_any_centre_within_a_contact_has_a_pressure() -> None:
+    """Closed form of a force near a corner of a square: a pyramid of three equal legs 4 d; others in equilibrium with their force."""
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    for d in (0.01, 0.1, 0.2):
+        assert corner_stress(square, np.array([1.0]), np.array([[d, d]]))[0] == pytest.approx([6.0 / (4.0 * d) ** 2, 0, 0, 0], rel=1e-6)
+    centres = np.random.default_rng(1).uniform(0.002, 0.998, (20, 2))
+    for shape in (square, square[::-1], square * [3.0, 0.3]):
+        stress = corner_stress(shape, np.ones(20), centres * np.ptp(shape, axis=0))
+        assert np.isfinite(stress).all() and (stress >= 0.0).all()
+        assert (stress.max(axis=1) * np.ptp(shape, axis=0).prod() >= 1.0 - 1e-9).all()
+    edge = corner_stress(square, np.array([1.0]), np.array([[0.4, 0.0]]))[0]
+    assert edge.tolist() == [np.inf, 0.0, 0.0, 0.0]
+
+
+def test_worn_corners_refuse_the_place_of_a_force(tmp_path) -> None:
+    text = '[structure]\nkind = "block"\nwidth = 1\nheight = 2\n[joints]\nworn_corners = 0.05\n' + STILL.format(end=0.1)
+    assert "worn corners shorten" in found(tmp_path, text).analyses[0]["reason"]
 
 
 @pytest.mark.parametrize("direction", ["", "direction = 0.0\n"])

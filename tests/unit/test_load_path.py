@@ -17,7 +17,7 @@ from extrados.decks.reader import make_deck
 from extrados.limit.certificate import Certificate, certify
 from extrados.limit.errors import NoAnswer
 from extrados.limit.least_load import LeastLoad
-from extrados.limit.load_path import RATIOS, LoadPath
+from extrados.limit.load_path import ELASTIC_LOAD, FIRST, RATIOS, LoadPath
 from extrados.limit.plane_path import collapse_along_path
 from extrados.limit.programme import LimitAnalysis
 from extrados.limit.solids import Programme, SolidLimit
@@ -110,6 +110,28 @@ def test_paths_in_the_plane_end_at_printed_states() -> None:
         state, mechanism = collapse_along_path(limit, direction, 0.5)
         assert direction * state.gamma == pytest.approx(0.35582, abs=1e-5)
         assert certify(limit.assembly, limit.loads, 0.65, state, mechanism, None).holds(state.gamma)
+
+
+def test_the_first_step_is_that_of_bonded_joints(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where joints open under self-weight, so that other factors replace those of bonded joints."""
+    arch = {"kind": "arch", "radius": 10.0, "thickness": 1.2, "embrace": 180, "voussoirs": 9}
+    limit = LimitAnalysis(make_deck({"structure": arch, "analysis": {"kind": "tilt"}}).building.blocks(), 0.8, associated=False)
+    points = limit.contact_points(1)
+    path, works = LoadPath(points, 0.5), []
+    bonded = path._factor(path._bonded(), 0.0, border=False)
+    expected = FIRST * ELASTIC_LOAD * float(points.live @ bonded.solve(points.live))
+    newton = path._newton
+
+    def recorded(old: Any, u: Any, gamma: float, work: float | None, *hold: Any) -> Any:
+        if work is None:
+            return newton(old, u, gamma, work, *hold)
+        works.append(work)
+        raise NoAnswer("seen")
+
+    monkeypatch.setattr(path, "_newton", recorded)
+    with pytest.raises(NoAnswer, match="seen"):
+        path.follow()
+    assert works == [pytest.approx(expected, rel=1e-9)]
 
 
 def test_plane_and_space_have_one_path() -> None:
@@ -211,3 +233,10 @@ def test_the_design_value_is_of_certified_paths() -> None:
 
     assert results.design_value([path(0.2, False), path(0.3, True), path(0.25, True), path(None, False)]) == 0.25
     assert results.design_value([path(0.2, False)]) is None and results.design_value(None) is None
+
+
+def test_no_path_without_a_live_load() -> None:
+    limit = LimitAnalysis(make_deck({"structure": WALL, "analysis": {"kind": "tilt"}}).building.blocks(), 0.65, associated=False)
+    points = limit.contact_points(1)
+    with pytest.raises(NoAnswer, match="no live load"):
+        LoadPath(replace(points, live=np.zeros_like(points.live)), 0.5)

@@ -337,4 +337,10 @@ def test_steps_that_a_law_does_not_admit_are_stated() -> None:
     deck = pier(0.1, 50.0, 0.25, target_displacement=1e-4, continuation="steps", cracking="orthotropic")
     result = run_deck(deck)
     assert not array(result, "event_step").any()
-    assert any("`continuation` = steps had no effect" in text for text in result.warnings)
+    assert any("`continuation` = steps had no effect: equilibrium iterations can follow" in text for text in result.warnings)
+
+
+def test_steps_that_another_rule_excludes_are_stated() -> None:
+    deck = pier(0.1, 50.0, 0.25, target_displacement=1e-4, continuation="steps", without_equilibrium="load-unload")
+    result = run_deck(deck)
+    assert any('had no effect: `without_equilibrium` is not "continue"' in text for text in result.warnings)

@@ -73,11 +73,13 @@ class LoadPath:
         still = np.zeros((m, p.dimension))
         state = _State(nothing, 0.0, still, still, np.zeros(k), np.zeros(k), still[:, 1:], np.zeros(m), np.zeros(m))
         bonded = self._factor(self._bonded(), 0.0, border=False)
-        upright = self._held(state, bonded.solve(p.dead), 0.0, None)
+        # before the next factors replace these
+        start, response = bonded.solve(p.dead), float(p.live @ bonded.solve(p.live))
+        upright = self._held(state, start, 0.0, None)
         if upright is None:
             raise NoAnswer("no equilibrium with elastic joints was found under self-weight")
         state = upright
-        first = step = FIRST * ELASTIC_LOAD * float(p.live @ bonded.solve(p.live))
+        first = step = FIRST * ELASTIC_LOAD * response
         flat, moved, halvings = 0, nothing, 0
         for _ in range(MOST_STEPS):
             start = state.u + moved

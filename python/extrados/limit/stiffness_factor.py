@@ -9,10 +9,11 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from extrados.limit.contact_points import ContactPoints
+from extrados.limit.errors import NoAnswer
 
 
 class StiffnessFactor:
-    """The stiffness of one structure; `factor` replaces the factors by those of other springs."""
+    """The stiffness of one structure; `factor` replaces the factors by those of other springs. NoAnswer for a border without live load."""
 
     def __init__(self, points: ContactPoints, *, border: bool):
         n = len(points.dead)
@@ -24,6 +25,8 @@ class StiffnessFactor:
         self._answer = np.repeat(np.arange(answers.shape[1]), np.diff(answers.indptr))[one]
         self._outer = answers.data[one] * answers.data[other]
         inner, live = np.arange(n), np.flatnonzero(points.live) if border else np.empty(0, dtype=int)
+        if border and not len(live):
+            raise NoAnswer("no live load acts on a block, so no load path exists")
         edge = np.full(len(live), n)
         self._fixed = np.concatenate([-points.live[live], points.live[live]])
         rows = np.concatenate([row, answers.indices[one], inner, live, edge])

@@ -140,7 +140,8 @@ class BlocksRun(KindResults):
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )
     edge_stress_at_rest_Pa: float | None = maybe(
-        "greatest compressive stress at an edge or corner of a joint at rest under self-weight: linear pressure without tension; "
+        "greatest compressive stress at an edge or corner of a joint at the start of the motion (self-weight, and with the initial "
+        "rotation if there is one): linear pressure without tension; "
         "null if an edge or a corner alone carries the load",
         "Pa",
     )
@@ -253,7 +254,9 @@ class BlocksTilt(KindResults):
 class DemTilt(BlocksTilt):
     """dem: the constant acceleration that brings the blocks down."""
 
-    load_direction: Literal["+x"] = fact("direction of the load (+x or -x) for which `hinges` are given")
+    load_direction: Literal["+x"] = fact(
+        "direction of the load for which `hinges`, `peak_rotation_rad` and `peak_slip_m` are given: always +x"
+    )
     hinges: list[NamedHinge] = fact("hinges of the collapse mechanism towards +x")
     hinges_opposite: list[NamedHinge] = fact("hinges of the collapse mechanism towards -x")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")

@@ -170,7 +170,7 @@ class Tilt(KindResults):
     )
     tilt_angle_opposite_deg: float = fact("tilt of the ground with the same effect as the collapse acceleration towards -x", "deg")
     admissible_interval_g: list[float] = fact("accelerations between which an admissible thrust line exists", "g")
-    load_direction: Literal["+x"] = fact("direction of the load (+x or -x) for which hinges and friction are given")
+    load_direction: Literal["+x"] = fact("direction of the load for which `hinges` and friction are given: always +x")
     hinges: list[Hinge] = fact("hinges of the collapse mechanism towards +x")
     sliding_joints: list[int] = fact("joints that slide or open in the collapse mechanism towards +x")
     hinges_opposite: list[Hinge] = fact("hinges of the collapse mechanism towards -x")
@@ -613,7 +613,9 @@ class Sweep(KindResults):
     unit: str = fact("unit of the key")
     mechanisms: list[GoverningMechanism] = fact("mechanisms that govern in a part of the range of the key")
     changes: list[Change] = fact("values of the key at which another mechanism begins to govern")
-    stable_limits: list[float] = fact("values of the key (in its unit) at the ends of the range in which the structure stands")
+    stable_limits: list[float] = fact(
+        "values of the key (in its unit) at which the structure begins or ceases to stand; empty if no such value is found"
+    )
     locked_limits: list[float] = fact("values of the key at which locking (no collapse mechanism exists) begins or ends")
     optimum_value: float = fact("value of the key with the greatest capacity, in the unit of the key")
     optimum_collapse_acceleration_g: float = fact("greatest collapse acceleration of all calculated values", "g")

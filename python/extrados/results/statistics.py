@@ -2,9 +2,13 @@
 
 from typing import Literal
 
+from extrados.results.dem import Convergence
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.rocking import Conditions, RockingOutcome
 from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
+
+#: Name of the levels that are sizes of the structure
+SIZE_FACTOR = "factor of all lengths"
 
 
 class Sensitivity(ResultModel):
@@ -239,7 +243,7 @@ class LevelShares(Annual):
         "p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true"
     )
     motions_that_collapse: int = fact("number of motions that cause collapse at one or more levels")
-    resurrections: int = fact("number of motions that cause collapse at one level but not at a higher level")
+    resurrections: int = maybe("number of motions that cause collapse at one level but not at a higher level (levels of motions only)")
 
     def judged_over_levels(self, violated: list[str]) -> Verdict:
         """The fitted median is the capacity; levels are questions, not a demand."""
@@ -331,9 +335,10 @@ class DemFragility(LevelShares):
     censored: list[int] = fact("runs without a result because blocks still move at their end, at each level; included in `failed`")
     collapse_probability_bounds: list[list[float | None]] = fact(
         "bounds of the share of motions that cause collapse, at each level: if none of the `censored` runs ends with collapse, "
-        "and if all do"
+        "and if all do; runs that fail for another reason are not counted"
     )
     unstable: int = fact("number of sampled buildings that collapse under their own weight; they count as collapsed")
+    convergence: Convergence | None = maybe("accuracy of the contact solver over all runs (rigid contacts only)")
     mean_peak_displacement_ratio: list[float | None] = fact(
         "mean ratio of the peak displacement of a block to the displacement that counts as collapse, at each level; collapse counts as 1"
     )
@@ -359,7 +364,16 @@ class DemFragility(LevelShares):
     def judged(self, demand: Demand) -> Verdict:
         """The fitted median is the capacity; censored runs are a doubt."""
         many = sum(self.censored)
-        return self.judged_over_levels([f"Blocks still move at the end of {many} runs, so these runs have no outcome."] if many else [])
+        doubts = [f"Blocks still move at the end of {many} runs, so these runs have no outcome."] if many else []
+        if self.intensity == SIZE_FACTOR and any(self.count):
+            shares = (
+                f"{100.0 * share:.3g} % at {level:g} times the size"
+                for level, share in zip(self.levels, self.collapse_probability, strict=True)
+                if share is not None
+            )
+            text = f"Share of the motions that cause collapse: {', '.join(shares)}."
+            return judge(text, None, None, "", "not-applicable", violated=doubts)
+        return self.judged_over_levels(doubts)
 
 
 class OverDurations(KindResults):

@@ -294,9 +294,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     r = run.results_of(name, LevelShares)
-    level, ratio, over, risen = (
-        run.array(name, key) for key in ("stripe_level", "incremental_ratio", "incremental_over", "incremental_risen")
-    )
+    level, ratio, over = (run.array(name, key) for key in ("stripe_level", "incremental_ratio", "incremental_over"))
+    risen = run.array(name, "incremental_risen") if "incremental_risen" in run.arrays[name] else np.zeros_like(over)
     unit = run.arrays[name]["stripe_level"].unit
     percentiles = [run.array(name, f"stripe_peak_ratio_{p}") for p in PERCENTILES]  # infinite for collapse
     stands = np.concatenate([ratio[over == 0], *(x[np.isfinite(x)] for x in percentiles)])
@@ -321,7 +320,7 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         )
         ax.set_ylabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
         style.legend_below(fig, ax)
-        if "grid" not in run.arrays[name]:
+        if r.resurrections is None:
             return style.save(fig, folder, f"{name}-incremental"), (
                 f"Greatest displacements under {min(len(ratio), HAIRS)} motions, plotted over the size of the structure, with the "
                 f"percentiles of all {r.motions} motions."
@@ -333,6 +332,7 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 
 def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    r = run.results_of(name, OverDurations)
     d, mean, deviation = (run.array(name, k) for k in ("duration", "mean_peak_rotation_ratio", "deviation_peak_rotation_ratio"))
     p, low, high = (run.array(name, k) for k in ("collapse_probability", "lower", "upper"))
     with style.figure(7.5, 3.6, columns=2) as (fig, (left, right)):
@@ -343,7 +343,7 @@ def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         right.errorbar(d, p, yerr=np.maximum([p - low, high - p], 0.0), fmt="o-", color=style.THRUST, capsize=3, markersize=4)
         right.set_ylim(-0.02, 1.02)
         right.set_ylabel("probability of collapse")
-        right.set_title("share of the motions that cause collapse, with 95 % interval")
+        right.set_title(f"share of the motions that cause collapse, with {100 * r.confidence:g} % interval")
         for ax in (left, right):
             ax.set_xlabel("duration of the motion t_d [s]")
         return [

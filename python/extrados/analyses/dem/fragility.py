@@ -16,19 +16,22 @@ from extrados.analyses.dem.sampled import Sample, make_blocks
 from extrados.analyses.dem.seen import BlocksSeen, Seen
 from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.solid_model import SolidModel
-from extrados.analyses.dem.standing import compared, proof_of_section, proof_of_solids
+from extrados.analyses.dem.standing import BRIEF, compared, proof_of_section, proof_of_solids
 from extrados.analyses.dem.tables import DemFragility
 from extrados.analyses.dem.trial import domain_of
 from extrados.analyses.motion_source import ListSource, Source, source_of
 from extrados.analyses.motion_source import measures as measures_of
+from extrados.analyses.needs import stones_of
 from extrados.analyses.statistics.annual import hazard_curve
 from extrados.analyses.statistics.levels import INTENSITIES, arranged, describe, shares_at
 from extrados.analyses.statistics.uncertain import sobol_draws
-from extrados.core import dem, dem3
+from extrados.core import dem, dem3, dem_run
+from extrados.core.dem_run import Effort
 from extrados.core.errors import Cancelled, CoreError, status_code
 from extrados.core.rocking import FAILED, Ground
-from extrados.limit.errors import NoAnswer
+from extrados.limit.errors import CannotStand, NoAnswer
 from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import Assembly
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
 from extrados.results.rocking import COLLAPSE, NO_HINGING, RECOVERY
@@ -36,8 +39,6 @@ from extrados.schema.constants import GRAVITY
 
 #: Motions without a count of their own
 MOTIONS = 100
-#: s: a run that ends as it has settled
-BRIEF = 1e-6
 OUTCOMES = {"at-rest": NO_HINGING, "slid": NO_HINGING, "rocked": RECOVERY, "collapse": COLLAPSE}
 WORDS = np.array(["at rest or slid", "rocked", "collapse", "failed"])
 CENSORED = "blocks still move at the end of the run: give a longer `settle`"
@@ -71,6 +72,7 @@ class Ensemble:
         motion, level = divmod(k, len(o.levels))
         row: dict[str, Any] = {name: np.nan for name in ("peak", "peak_ratio", "stop_time", "scale", "pga")}
         row |= {"outcome": np.int8(FAILED), "slips": np.int8(0), "censored": np.int8(0), "unstable": np.int8(0), "reason": ""}
+        row |= {"off_footing": np.int8(0), "energy_residual": 0.0, **_effort_rows(dem_run.NO_EFFORT)}
         (ground,) = self.source.grounds(motion, 1, 1)
         if isinstance(ground, str):
             return row | {"reason": ground}
@@ -78,6 +80,7 @@ class Ensemble:
         if not np.isfinite(scale):
             return row | {"reason": "the motion is zero, so it cannot be scaled"}
         row |= {"scale": scale, "pga": scale * pga}
+        fallen = {"outcome": np.int8(COLLAPSE), "unstable": np.int8(1), "peak_ratio": 1.0, "stop_time": 0.0}
         size = o.levels[level] if o.intensity == "size" else 1.0
         try:
             if (motion, size) not in kept:
@@ -87,17 +90,21 @@ class Ensemble:
         except (Falls, Restless) as error:
             if isinstance(error, Restless) and not self._cannot_stand(kept[motion, size], motion, size):
                 return row | {"reason": str(error)}
-            return row | {"outcome": np.int8(COLLAPSE), "unstable": np.int8(1), "peak_ratio": 1.0, "stop_time": 0.0}
-        except (Refused, BadGeometry, CoreError) as error:
+            return row | fallen
+        except CannotStand:
+            return row | fallen
+        except (Refused, BadGeometry, CoreError, NoAnswer) as error:
             if isinstance(error, Cancelled):
                 raise
             return row | {"reason": str(error)}
 
     def _cannot_stand(self, model: Model | SolidModel, motion: int, size: float) -> bool:
         """Whether limit analysis proves collapse under the own weight of a building that does not come to rest."""
-        proof_of = proof_of_section if isinstance(model, Model) else proof_of_solids
+        building = self.sample.building_of(motion, size)
         try:
-            return proof_of(self.sample.building_of(motion, size)) is not None
+            if isinstance(model, Model):
+                return proof_of_section(building, model.strength or None) is not None
+            return proof_of_solids(building) is not None
         except NoAnswer:
             return False
 
@@ -134,7 +141,23 @@ class Ensemble:
             "slips": np.int8(seen.slides),
             "censored": np.int8(censored),
             "reason": CENSORED if censored else "",
+            "off_footing": np.int8(outcome != "collapse" and bool(seen.unsupported)),
+            "energy_residual": found.residual,
+            **_effort_rows(found.effort),
         }
+
+
+def _effort_rows(effort: Effort) -> dict[str, float]:
+    """The work of rigid contacts as rows of a member."""
+    return {f"effort_{name}": float(value) for name, value in vars(effort).items()}
+
+
+def _effort_of(swept: Swept) -> Effort:
+    """The work of rigid contacts in all members."""
+    rows = {name: swept[f"effort_{name}"] for name in vars(dem_run.NO_EFFORT)}
+    total = [int(rows[name].sum()) for name in ("steps", "factors", "open_steps")]
+    worst = int(rows["residual"].argmax())
+    return Effort(total[0], total[1], int(rows["most_rounds"].max()), total[2], float(rows["residual"][worst]), float(rows["worst"][worst]))
 
 
 def look(model: Model | SolidModel, found: Any, floor: bool) -> BlocksSeen:
@@ -171,8 +194,8 @@ def run(context: Context, options: DemFragility) -> Result:
     model = make_blocks(context.building, options)
     if isinstance(model, Model):
         context.warnings += dem_model.warnings(model, options)
-    elif not options.rigid:
-        context.warnings += dem_model.doubts_of_springs(model.values)
+    else:
+        context.warnings += (dem_model.doubts_of_rigid_mortar if options.rigid else dem_model.doubts_of_springs)(model.values)
     return compared(context, options.rigid, model, lambda: _found(context, options, model))
 
 
@@ -211,8 +234,10 @@ def _describe(context: Context, options: DemFragility, job: Ensemble, swept: Swe
     censored = np.bincount(at, swept["censored"], len(levels))[order].astype(int)
     fell, valid = np.array(numbers["collapsed"]), np.array(numbers["count"])
     runs = np.maximum(valid + censored, 1)
-    bounds = np.column_stack([fell / runs, (fell + censored) / runs])
-    numbers["collapse_probability_bounds"] = np.where((valid + censored > 0)[:, None], bounds, np.nan)
+    known = (valid + censored > 0)[:, None]
+    bounds = np.where(known, np.column_stack([fell / runs, (fell + censored) / runs]), np.nan)
+    numbers["collapse_probability_bounds"] = bounds
+    section, effort = isinstance(stones_of(context.building, options), Assembly), _effort_of(swept)
     unstable = len(np.unique(swept.members[swept["unstable"] > 0] // len(levels)))
     result.results = out.DemFragility(
         **numbers,
@@ -220,10 +245,11 @@ def _describe(context: Context, options: DemFragility, job: Ensemble, swept: Swe
         failed=int((swept["outcome"] == FAILED).sum()),
         confidence=options.confidence,
         solver=options.solver,
-        direction_deg=None if isinstance(job.sample.model(0), Model) else options.direction or 0.0,
+        direction_deg=None if section else options.direction or 0.0,
         uncertain=sorted(options.uncertain),
         censored=censored.tolist(),
         unstable=unstable,
+        convergence=measures.convergence(effort) if options.rigid else None,
     )
     if options.intensity == "size":
         result.answer = _spoken_sizes(result.results, word)
@@ -237,6 +263,7 @@ def _describe(context: Context, options: DemFragility, job: Ensemble, swept: Swe
         "pga": Array(swept["pga"] / GRAVITY, ("member",), "g"),
     }
     _tell(job.source, swept, len(levels), unstable, result)
+    result.warnings += dem_model.unconverged(effort)
     _table(options, levels, swept, result)
 
 
@@ -262,6 +289,13 @@ def _tell(source: Source, swept: Swept, levels: int, unstable: int, result: Resu
         motion = int(swept.members[first]) // levels
         name = source.names[motion % len(source.names)] if isinstance(source, ListSource) else f"motion {motion + 1}"
         result.warnings.append(f"{int(lost.sum())} of {len(lost)} runs have no result. First reason: {name}: {swept['reason'][first]}")
+    if off := int(swept["off_footing"].sum()):
+        result.warnings.append(
+            f"In {off} of {len(lost)} runs without collapse, blocks slide off their footings. If detached blocks can slide on a floor, "
+            "give its height as `floor`."
+        )
+    if (residual := float(swept["energy_residual"].max())) > measures.LARGE_RESIDUAL:
+        result.warnings.append(f"The error of the energy balance is up to {100 * residual:.2g} % of the total energy exchanged in a run.")
     if unstable:
         result.warnings.append(
             f"{unstable} of the sampled buildings collapse under their own weight: they count as collapsed under every motion."

@@ -68,7 +68,7 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
     )
     numbers = _numbers(options, trial, seen, ground) | chaos
     _store(options, seen, ground, result)
-    numbers |= put_thrust(options, model, found, result)
+    numbers |= put_thrust(options, seen, result)
     if seen.slides:
         result.warnings.append(f"joints slide by up to {three_figures(1e3 * seen.sliding.peak)} mm")
     if who := numbers["off_footing"]:

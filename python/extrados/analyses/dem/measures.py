@@ -21,6 +21,8 @@ from extrados.views.rigid import FOOTING
 
 #: A joint is open where it gapes by more than this fraction of its length.
 OPEN = 5e-4
+#: Error of the energy balance over the energy exchanged, above which a run is doubtful
+LARGE_RESIDUAL = 0.01
 #: A joint slides where it slips by more than this fraction of the shortest one.
 SLIDES = 0.01
 #: Of the highest swing before an impact: lower ones say little of the restitution.

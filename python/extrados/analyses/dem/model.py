@@ -130,7 +130,10 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
         return found + doubts_of_rigid_mortar(model.values)
     found += doubts_of_springs(values or model.values)
     if model.strength:
-        found.append("crushed corners recover when the joint closes: the damage by crushing and its energy loss are neglected")
+        found.append(
+            "crushed corners recover when the joint closes: the damage by crushing and its energy loss are neglected. Contacts that form "
+            "later, and joints whose overlap is below 4 % of the size of the smallest block, do not crush"
+        )
     if options.mass_damping > 0.0:
         found.append(
             "mass-proportional damping acts like viscous air around a rocking block. This has no physical "

@@ -47,6 +47,8 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
         yield lambda: _refuse_springs(building)
     if isinstance(options, tables.SpatialDem) and options.crushing:
         yield lambda: _refuse_crushing(building, _rigid(options))
+    if isinstance(options, tables.Dem) and options.thrust:
+        yield lambda: _refuse_worn_thrust(building)
     yield lambda: refuse_rigid_ties(building)
     yield lambda: section_strands(building)
     if building.joints.damping == "restitution" and building.joints.beta is None:
@@ -116,6 +118,15 @@ def _refuse_crushing(building: Building, rigid: bool) -> None:
             raise Refused(
                 "`crushing` is only for joints without mortar: remove `cohesion` and `tension`, or remove `crushing`", ("joints", name)
             )
+
+
+def _refuse_worn_thrust(building: Building) -> None:
+    """Refused where forces are to be placed in joints that are shorter than drawn."""
+    if building.joints.worn_corners > 0.0:
+        raise Refused(
+            "the places of forces and the stresses refer to joints as drawn, which worn corners shorten: remove `thrust` or `worn_corners`",
+            ("joints", "worn_corners"),
+        )
 
 
 def _refuse_restitution(building: Building) -> None:

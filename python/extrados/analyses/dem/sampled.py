@@ -12,15 +12,15 @@ from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.solid_model import SolidModel, make_solid_model
 from extrados.analyses.dem.tables import DemFragility
 from extrados.analyses.needs import stones_of
-from extrados.analyses.statistics.uncertain import drawn_masses, drawn_stones, factors_of
+from extrados.analyses.statistics.uncertain import BY_STONE, drawn_masses, drawn_stones, factors_of, refuse_mixed_friction
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import Assembly
 from extrados.schema.quantities import unit_of
 from extrados.views.building import Building
 from extrados.views.rigid import rigid_bodies
 
-#: Uncertain values that are no lengths of the structure
-SPRINGS, BY_BLOCK = ("stiffness", "damping"), ("density", "imperfection")
+#: Uncertain values of springs
+SPRINGS = ("stiffness", "damping")
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,12 @@ class Sample:
     def model(self, k: int, size: float = 1.0) -> Model | SolidModel:
         """The model of building k with all lengths times `size`; BadGeometry or Refused where it has none."""
         factor, seeds = factors_of(self.options.uncertain, self.draws[k])
-        model = make_blocks(self.building_of(k, size), self.options)
+        building, options = self.building_of(k, size), self.options
+        if options.floor is not None:
+            options = options.model_copy(update={"floor": size * options.floor})
+        model = make_blocks(building, options)
         if seeds:
-            model = _redrawn(model, self.building, self.options, seeds)
+            model = _redrawn(model, building, options, seeds)
         springs = {name: factor[name] for name in SPRINGS if name in factor}
         if isinstance(model, Model):
             return replace(model, values=model.values.scaled(**springs))
@@ -120,25 +123,22 @@ def refuse_uncertain(building: Building, options: DemFragility) -> None:
     except BadGeometry:
         return  # told already
     structure = building.require_structure()
-    known = [*lengths_of(building), "friction", "density"]
-    if section and options.merge == "none":
-        known.append("imperfection")
+    known = [*lengths_of(building), "friction"]
+    if options.merge == "none":
+        known += BY_STONE if section else ["density"]
     if not options.rigid:
         known += SPRINGS
     for name in options.uncertain:
         key = ("analysis", "uncertain", name)
+        if name in BY_STONE and options.merge != "none":
+            raise Refused(f'`{name}` differs from block to block, and merge = "three-bars" joins the blocks: remove one of them', key)
         if name == "imperfection" and not section:
             raise Refused("faces of solids with moved corners would not be plane: vary the lengths of [structure] instead", key)
         if name in SPRINGS and options.rigid:
             raise Refused('rigid contacts have no springs: remove this value, or give solver = "compliant"', key)
         if name not in known:
             raise Refused(f"this {structure.word} has no uncertain value '{name}'; expected one of {', '.join(known)}", key)
-    joints = building.joints
-    if "friction" in options.uncertain and (joints.coefficient is None or any(t.friction is not None for t in joints.types)):
-        raise Refused(
-            "friction varies for all joints together: give [joints] friction as one number, and no friction of joint types",
-            ("analysis", "uncertain", "friction"),
-        )
+    refuse_mixed_friction(building, options.uncertain)
     if options.intensity == "size":
         if getattr(structure, "file", None) is not None:
             raise Refused(

@@ -160,7 +160,7 @@ def numbers_of(options: Dem, seen: BlocksSeen, collapse: measures.Collapse) -> d
 def doubts_of_run(model: Model | SolidModel, found: dem_run.FoundRun, violated: list[str], still_moving: bool) -> list[str]:
     """Warnings of any run: its energy balance, its convergence, conditions that do not hold, an end before rest."""
     doubts = []
-    if found.residual > 0.01:
+    if found.residual > measures.LARGE_RESIDUAL:
         doubts.append(
             f"the error of the energy balance is {100 * found.residual:.2g} % of the total energy exchanged. Try a smaller time step"
         )

@@ -72,7 +72,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
         return solid_measures.look(model, one, options.floor is not None)
 
     chaos = probe_chaos(context, job_of if options.perturbed else None, idle, found, model.count, collapse, look, result)
-    numbers = _numbers(options, seen, collapse) | chaos | put_thrust(options, model, found, result)
+    numbers = _numbers(options, seen, collapse) | chaos | put_thrust(options, seen, result)
     result.results = r = SolidDemRun(**numbers, horizontal_components=1 if across is None else 2)
     _store(options, seen, ground, result)
     if across is not None:

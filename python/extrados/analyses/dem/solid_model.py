@@ -1,6 +1,7 @@
 """A deck's blocks in space as a model of discrete elements: bodies, supports, joint types, damping, settlement."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -51,6 +52,22 @@ class SolidModel:
         """Names of the mobile bodies, then of the supports."""
         return [*self.assembly.block_names, *(f"support {k + 1}" for k in range(len(self.supports.bodies)))]
 
+    @cached_property
+    def pairs(self) -> dict[tuple[int, int], list[int]]:
+        """Numbers of the contacts of each pair of bodies, ascending."""
+        found: dict[tuple[int, int], list[int]] = {}
+        for j, (a, b) in enumerate(zip(self.assembly.a.tolist(), self.assembly.b.tolist(), strict=True)):
+            one, other = (self.count + int(self.supports.of_joint[j]) if k == GROUND else k for k in (a, b))
+            found.setdefault((min(one, other), max(one, other)), []).append(j)
+        return found
+
+    def shared(self, values: np.ndarray) -> np.ndarray:
+        """Values of the contacts (contacts), averaged by area over those of a pair of bodies, which have one law."""
+        found = np.empty(len(values))
+        for contacts in self.pairs.values():
+            found[contacts] = np.average(values[contacts], weights=self.assembly.area[contacts])
+        return found
+
     def bodies(self) -> dem3.Solids:
         """Bodies and laws for the core; contacts that form later take the median of the joints, without mortar."""
         one, v = self.assembly, self.values
@@ -60,14 +77,9 @@ class SolidModel:
         laws = [_law(v, *dry)]
         numbers: dict[Law, int] = {}
         joints: dict[tuple[int, int], int] = {}
-        weight: dict[tuple[int, int], list[int]] = {}
-        for j, (a, b) in enumerate(zip(one.a.tolist(), one.b.tolist(), strict=True)):
-            one_of, other = (self.count + int(self.supports.of_joint[j]) if k == GROUND else k for k in (a, b))
-            weight.setdefault((min(one_of, other), max(one_of, other)), []).append(j)
-        for pair, shared in weight.items():
-            area = one.area[shared]
-            of_pair = (v.stiffness, v.shear_stiffness, v.friction, v.cohesion, v.tension)
-            law = _law(v, *(float(np.average(x[shared], weights=area)) for x in of_pair))
+        of_pair = [self.shared(x) for x in (v.stiffness, v.shear_stiffness, v.friction, v.cohesion, v.tension)]
+        for pair, shared in self.pairs.items():
+            law = _law(v, *(float(x[shared[0]]) for x in of_pair))
             if law not in numbers:
                 numbers[law] = len(laws)
                 laws.append(law)

@@ -1,6 +1,7 @@
 """Whether limit analysis, and springs where contacts are rigid, agree with elements on what stands under its own weight."""
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -42,7 +43,9 @@ def compared(context: Context, rigid: bool, model: Model | SolidModel, find: Cal
     """What elements find, with what other methods find under the own weight. Where the elements collapse: CannotStand where
     limit analysis of the same blocks proves it, else Refused."""
     alone, doubt, warning = left_out(model), "", ""
-    proof_of = proof_of_section if isinstance(model, Model) else proof_of_solids
+    proof_of: Callable[[Building], CannotStand | None] = proof_of_solids
+    if isinstance(model, Model):
+        proof_of = partial(proof_of_section, strength=model.strength or None)
     try:
         with interruptible():  # Ctrl-C between two runs stops the next one
             if rigid and not alone:  # first: Ctrl-C here loses nothing
@@ -116,11 +119,12 @@ def jammed(model: Model | SolidModel, threads: int) -> tuple[str, str]:
     return "", ""
 
 
-def proof_of_section(building: Building) -> CannotStand | None:
+def proof_of_section(building: Building, strength: float | None = None) -> CannotStand | None:
     """The proof by limit analysis that a section collapses under its own weight; None where an admissible state was found.
-    NoAnswer where neither was found."""
+    NoAnswer where neither was found. strength: at which joints crush [Pa]."""
     try:
-        limit = LimitAnalysis(building.blocks(), building.friction(), loads=loads_of(building.blocks(), None, building))
+        loads = loads_of(building.blocks(), None, building)
+        limit = LimitAnalysis(building.blocks(), building.friction(), strength=strength, loads=loads)
         return None if limit.stands() else cannot_stand(limit)
     except (Disconnected, Refused) as error:
         raise NoAnswer(str(error)) from None

@@ -10,18 +10,22 @@ import numpy as np
 
 from extrados.analyses.dem.measures import openings
 from extrados.analyses.dem.model import Model
+from extrados.analyses.dem.seen import BlocksSeen
 from extrados.analyses.dem.solid_measures import carried
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.solid_settlement import corner_areas
 from extrados.analyses.dem.tables import Dem
 from extrados.core import dem, dem3, dem_run
+from extrados.model.geometry.convex import hull
 from extrados.model.geometry.solids.contacts import GROUND
 from extrados.results.model import Array, Result
 
-#: Parts of each side of the triangles by which a polygon is integrated; steps of Newton's method
-PARTS, STEPS = 8, 40
-#: Of the area of a contact: less under pressure is a corner or an edge
-LEAST = 1e-3
+#: Steps of Newton's method; error of the force, and of its moment over the greatest extent; shortest share of a step
+STEPS, CLOSE, SHORTEST = 100, 1e-9, 1e-3
+#: Of the length of a joint: slip from which the joint as drawn is not the contact
+SLID = 0.05
+#: Of the greatest extent of a contact: so near to the boundary a force is carried by an edge or a corner alone
+NEAR = 1e-4
 
 
 @dataclass(frozen=True)
@@ -66,10 +70,17 @@ def thrust_of(model: Model | SolidModel, run: dem.Run | dem3.Run) -> Thrust:
     return _of_solids(model, run)
 
 
-def put_thrust(options: Dem, model: Model | SolidModel, run: dem.Run | dem3.Run, result: Result) -> dict[str, float | None]:
+def put_thrust(options: Dem, seen: BlocksSeen, result: Result) -> dict[str, float | None]:
     """Arrays of the thrust into `result` where the deck requests them; the key of its results."""
     if not options.thrust:
         return {}
+    model, run = seen.model, seen.run
+    assert isinstance(run, dem.Run | dem3.Run)
+    if seen.sliding.ratio > SLID:
+        result.warnings.append(
+            f"the stresses at the edges of joints refer to the joints as drawn, but joints slide by up to {100 * seen.sliding.ratio:.2g} % of "
+            "their length"
+        )
     if np.nanmax(model.values.tension, initial=0.0) > 0.0:
         result.warnings.append("the key `thrust` neglects the tension of mortar, in stresses as well as in the places of forces")
     found = thrust_of(model, run)
@@ -135,13 +146,14 @@ def _of_solids(model: SolidModel, run: dem3.Run) -> Thrust:
     bodies = np.column_stack([one.a, one.b])
     bodies = np.where(bodies == GROUND, model.count + model.supports.of_joint[:, None], bodies)
     first, second = one.tangents
+    stiffness = model.shared(model.values.stiffness)
     for j, (a, b) in enumerate(bodies.tolist()):
         corners = one.polygon[j]
         (moved, way), (other, back) = (carried(run, k, corners, one.normal[j], rest[k]) for k in (a, b))
         mean = way + back
         mean /= np.linalg.norm(mean, axis=1)[:, None]
         gap = np.einsum("tkx,tx->tk", moved - other, mean)
-        force = model.values.stiffness[j] * corner_areas(corners) * np.maximum(-gap, 0.0)
+        force = stiffness[j] * corner_areas(corners) * np.maximum(-gap, 0.0)
         normal[:, j] = force.sum(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             weight = force / normal[:, j, None]
@@ -155,48 +167,64 @@ def _of_solids(model: SolidModel, run: dem3.Run) -> Thrust:
 
 def corner_stress(corners: np.ndarray, force: np.ndarray, centre: np.ndarray) -> np.ndarray:
     """Stress (time, corner) [Pa] at the corners (k, 2) [m] of a polygon under forces (time) [N] at centres (time, 2) [m]: the linear
-    pressure without tension in equilibrium with them, by Newton's method from the pressure with tension."""
-    points, area = _cells(corners)
-    basis = np.column_stack([np.ones(len(points)), points])
-    at = np.column_stack([np.ones(len(corners)), corners])
+    pressure without tension in equilibrium with them; infinite at the corner nearest to a force at the boundary, NaN where it is not found.
+
+    The pressure max(0, p b), b = (1, x, y), minimises the convex 1/2 int max(0, p b)^2 - p w, w the force and its moments: Newton's
+    method with step halving, from the pressure with tension.
+    """
+    middle, scale = corners.mean(axis=0), float(np.ptp(corners, axis=0).max())
+    basis = np.column_stack([np.ones(len(corners)), (corners - middle) / scale])
+    whole = _moments(basis)
+    sign = np.sign(whole[0, 0])
+    edge = hull(corners)
+    along = np.roll(edge, -1, axis=0) - edge
+    inward = np.stack([-along[:, 1], along[:, 0]]) / np.linalg.norm(along, axis=1)
+    within = (centre[:, None] - edge[None]).transpose(0, 2, 1) * inward[None]
+    borne = within.sum(axis=1).min(axis=1) > NEAR * scale
     found = np.zeros((len(force), len(corners)))
-    whole = (basis * area[:, None]).T @ basis
-    scale = np.sqrt(area.sum())
     for t in np.flatnonzero(force > 0.0):
-        wanted = force[t] * np.array([1.0, *centre[t]])
-        plane = np.linalg.solve(whole, wanted)
-        for _ in range(STEPS):
-            pressed = basis @ plane > 0.0
-            if area[pressed].sum() < LEAST * area.sum():
-                break
-            part = basis[pressed]
-            matrix = (part * area[pressed, None]).T @ part
-            rest = wanted - matrix @ plane
-            if np.abs(rest / np.array([1.0, scale, scale])).max() < 1e-9 * force[t]:
-                break
-            plane = plane + np.linalg.lstsq(matrix, rest, rcond=None)[0]
-        else:
-            plane = np.full(3, np.nan)
-        if not np.isfinite(plane).all() or area[basis @ plane > 0.0].sum() < LEAST * area.sum():
+        if not borne[t]:
             found[t, np.linalg.norm(corners - centre[t], axis=1).argmin()] = np.inf
             continue
-        found[t] = np.maximum(at @ plane, 0.0)
+        wanted = np.array([1.0, *((centre[t] - middle) / scale)])
+        plane = np.linalg.solve(sign * whole, wanted)
+        matrix = sign * _moments(_pressed(basis, plane))
+        for _ in range(STEPS):
+            rest = wanted - matrix @ plane
+            if np.abs(rest).max() < CLOSE:
+                break
+            way, value = np.linalg.lstsq(matrix, rest, rcond=None)[0], (0.5 * matrix @ plane - wanted) @ plane
+            share, gain = 1.0, rest @ way
+            while True:
+                matrix = sign * _moments(_pressed(basis, plane + share * way))
+                trial = plane + share * way
+                if (0.5 * matrix @ trial - wanted) @ trial <= value - 1e-4 * share * gain or share < SHORTEST:
+                    break
+                share *= 0.5
+            plane = trial
+        else:
+            found[t] = np.nan
+            continue
+        found[t] = force[t] / scale**2 * np.maximum(basis @ plane, 0.0)
     return found
 
 
-def _cells(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points (n, 2) [m] and areas [m^2] that integrate products of linear functions over a polygon exactly: midpoints of the sides of small
-    triangles."""
-    middle, points, areas = corners.mean(axis=0), [], []
-    step = np.arange(PARTS)
-    i, j = (grid.ravel() for grid in np.meshgrid(step, step, indexing="ij"))
-    up, down = i + j < PARTS, i + j < PARTS - 1
-    for one, two in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        sides = np.stack([one - middle, two - middle]) / PARTS
-        size = 0.5 * abs(float(np.linalg.det(sides)))
-        for some, offsets in ((up, ((0.5, 0.0), (0.0, 0.5), (0.5, 0.5))), (down, ((1.0, 0.5), (0.5, 1.0), (0.5, 0.5)))):
-            base = np.column_stack([i[some], j[some]]).astype(float)
-            for offset in offsets:
-                points.append(middle + (base + np.array(offset)) @ sides)
-                areas.append(np.full(len(base), size / 3.0))
-    return np.concatenate(points), np.concatenate(areas)
+def _pressed(basis: np.ndarray, plane: np.ndarray) -> np.ndarray:
+    """The part (n, 3) of a polygon (k, 3) of points (1, x, y) on which the plane (3) is above zero."""
+    ahead, value = np.roll(basis, -1, axis=0), basis @ plane
+    other = np.roll(value, -1)
+    crosses = (value > 0.0) != (other > 0.0)
+    share = np.divide(value, value - other, out=np.zeros(len(value)), where=crosses)
+    both = np.stack([basis, basis + share[:, None] * (ahead - basis)], axis=1)
+    found: np.ndarray = both[np.stack([value > 0.0, crosses], axis=1)]
+    return found
+
+
+def _moments(basis: np.ndarray) -> np.ndarray:
+    """Integral (3, 3) of the products of (1, x, y) over a polygon (k, 3), negative for a clockwise one: of each triangle with the origin,
+    A / 12 times the products at its corners and of their sum."""
+    ahead, origin = np.roll(basis, -1, axis=0), np.array([1.0, 0.0, 0.0])
+    area = 0.5 * (basis[:, 1] * ahead[:, 2] - ahead[:, 1] * basis[:, 2])
+    points = np.stack([basis, ahead, np.broadcast_to(origin, basis.shape), basis + ahead + origin])
+    found: np.ndarray = np.einsum("k,pki,pkj->ij", area / 12.0, points, points)
+    return found

@@ -594,10 +594,10 @@ class _Run:
                 "lateral reduction, confinement, shear retention and bars."
             )
         if self.options.continuation in FROM_THE_START and not self.goes_on:
-            curve.warnings.append(
-                f"`continuation` = {self.options.continuation} had no effect: equilibrium iterations can follow only rotating cracks of "
-                "isotropic masonry, and joints. The run consists of events."
-            )
+            why = "equilibrium iterations can follow only rotating cracks of isotropic masonry, and joints with mortar"
+            if self.options.without_equilibrium != "continue":
+                why = '`without_equilibrium` is not "continue"'
+            curve.warnings.append(f"`continuation` = {self.options.continuation} had no effect: {why}. The run consists of events.")
         if self.options.continuation == "dissipation":
             self._warn_of_drops(curve)
         steps = events.steps & events.equilibrium

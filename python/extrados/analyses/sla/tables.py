@@ -346,7 +346,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         "continue",
         "method after an event for which no multiplier of loads B is admissible at all points. "
         '"continue": equilibrium iterations in displacement control (for rotating cracks without bed '
-        'joints, bars and joints; otherwise load-unload). "load-unload": loads A remain, and the '
+        'joints and bars, and for joints with mortar; otherwise load-unload). "load-unload": loads A remain, and the '
         'point with the greatest lower limit of lambda is damaged. "proportional": all loads of the last equilibrium state are '
         'reduced together (intermittent proportional loading). "force-release": the force that a tooth '
         "releases acts on the other points before the load increases again",

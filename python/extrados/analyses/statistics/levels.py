@@ -17,6 +17,7 @@ from extrados.core.rocking import FAILED
 from extrados.motions.hazard import HazardCurve
 from extrados.results.model import Array, Result, TableData
 from extrados.results.rocking import COLLAPSE, RECOVERY
+from extrados.results.statistics import SIZE_FACTOR
 from extrados.schema.constants import GRAVITY
 
 #: Intensity -> (name in the results, unit of a level in SI, unit of the column)
@@ -27,7 +28,7 @@ INTENSITIES = {
     "sa": ("SA", GRAVITY, "g"),
     "arias": ("Arias intensity", 1.0, "m/s"),
     "scale": ("factor", 1.0, ""),
-    "size": ("factor of all lengths", 1.0, ""),
+    "size": (SIZE_FACTOR, 1.0, ""),
 }
 #: Of the peak rotation over all motions at a level: the median, and what a normal variable has at one deviation
 PERCENTILES = (16, 50, 84)
@@ -122,9 +123,10 @@ def describe(
             float(np.median(v[ok])) / GRAVITY if ok.any() else None for v, ok in zip(seen.pga.T, seen.valid.T, strict=True)
         ]
     fits, draws = ({}, None) if intensity == "size" else _curves(seen, confidence, repeats, seed, name, unit, r, result)
-    _incremental(seen, unit, ratio, r, result)
+    _incremental(seen, unit, ratio, r, result, scaled=intensity != "size")
     _table(seen, unit, r, result)
-    result.answer = _answer(seen, fits, name, unit, word, confidence, r)
+    if intensity != "size":
+        result.answer = _answer(seen, fits, name, unit, word, confidence, r)
     if hazard is not None and "" in fits:
         others = (np.empty(0),) * 2 if draws is None else draws.curves
         tails = (0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence)
@@ -193,13 +195,21 @@ def _curves(
     return fits, draws
 
 
-def _incremental(seen: Stripes, unit: str, ratio: str, r: dict[str, Any], result: Result) -> None:
-    """Incremental dynamic analysis: where each motion first brings it down, and levels above that do not."""
+def _incremental(seen: Stripes, unit: str, ratio: str, r: dict[str, Any], result: Result, *, scaled: bool) -> None:
+    """Incremental dynamic analysis: where each motion first brings it down, and levels above that do not. scaled: levels scale the
+    motions; larger structures, in contrast, are more stable, and those that survive above a smaller one are the rule."""
     levels, valid, over = seen.levels, seen.valid, seen.over
     fell = np.asarray(over.any(axis=1))
+    r["motions_that_collapse"] = int(fell.sum())
+    result.arrays |= {
+        "incremental_ratio": Array(seen.ratio[:SHOWN], ("shown", "stripe"), "", f"{ratio}, for the first motions"),
+        "incremental_over": Array(over[:SHOWN].astype(np.int8), ("shown", "stripe"), "", "1: collapse"),
+    }
+    if not scaled:
+        return
     index = over.argmax(axis=1)
     risen = (np.arange(len(levels)) > index[:, None]) & fell[:, None] & valid & ~over
-    r |= {"motions_that_collapse": int(fell.sum()), "resurrections": int(risen.any(axis=1).sum())}
+    r["resurrections"] = int(risen.any(axis=1).sum())
     result.tables["incremental"] = TableData(
         {
             "motion": np.arange(len(fell)) + 1,
@@ -209,14 +219,12 @@ def _incremental(seen: Stripes, unit: str, ratio: str, r: dict[str, Any], result
         {"first_collapse": unit},
     )
     result.arrays |= {
-        "incremental_ratio": Array(seen.ratio[:SHOWN], ("shown", "stripe"), "", f"{ratio}, for the first motions"),
-        "incremental_over": Array(over[:SHOWN].astype(np.int8), ("shown", "stripe"), "", "1: collapse"),
         "incremental_risen": Array(
             risen[:SHOWN].astype(np.int8),
             ("shown", "stripe"),
             "",
             "1: the structure survives at this level, although a lower level of the same motion overturns it",
-        ),
+        )
     }
 
 

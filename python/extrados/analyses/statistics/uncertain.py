@@ -1,5 +1,6 @@
 """Buildings whose sizes, corners, stones and impacts are not known exactly: rockers at points of the unit cube."""
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -150,13 +151,19 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
             '"thesis"',
             ("analysis", "uncertain"),
         )
-    if "friction" in names and (building.joints.coefficient is None or any(t.friction is not None for t in building.joints.types)):
+    refuse_mixed_friction(building, names)
+    if "corners" in names and getattr(structure, "thickness_factor", 1.0) == 1.0:
+        raise Refused("`thickness_factor` is 1, so there is no lost thickness that could vary", ("analysis", "uncertain", "corners"))
+
+
+def refuse_mixed_friction(building: Building, names: Collection[str]) -> None:
+    """Refused where the friction is uncertain and not one number for all joints."""
+    joints = building.joints
+    if "friction" in names and (joints.coefficient is None or any(t.friction is not None for t in joints.types)):
         raise Refused(
             "friction varies for all joints together: give [joints] friction as one number, and no friction of joint types",
             ("analysis", "uncertain", "friction"),
         )
-    if "corners" in names and getattr(structure, "thickness_factor", 1.0) == 1.0:
-        raise Refused("`thickness_factor` is 1, so there is no lost thickness that could vary", ("analysis", "uncertain", "corners"))
 
 
 def _model(building: Building, options: Fragility, factor: dict[str, float], seeds: dict[str, int]) -> tuple[Rocker, Building]:
