@@ -63,7 +63,7 @@ def test_what_a_drawing_does_not_show_is_no_masonry(tmp_path: Path) -> None:
     drawing, _ = Blocks(kind="blocks", file=path.name)._drawing(tmp_path)
     places = sorted(tuple(p.points.min(axis=0).round(6)) for p in drawing.blocks)
     assert places == [(0.0, 0.0), (0.0, 1.0), (4.0, 0.0), (20.0, 0.0), (24.0, 0.0)]
-    assert [note for note in drawing.notes if "not read" in note] == [f"hidden.dxf: {HIDDEN}"]
+    assert [note for note in drawing.notes if "does not display" in note] == [f"hidden.dxf: {HIDDEN}"]
     found = run({"file": path.name}, tmp_path)
     assert found.status == "ok" and len(found["centroid"]) == 5 and any(HIDDEN in w for w in found.warnings)
     deck = make_deck({"structure": {"kind": "blocks", "file": path.name}, "analysis": {"kind": "tilt"}}, tmp_path)
@@ -77,7 +77,7 @@ def test_a_hidden_layer_that_the_deck_names_is_read(tmp_path: Path) -> None:
     for keys in ({"layers": ["STONE", "VIEW", "OLD"]}, {"layer": [{"name": "OLD", "role": "stones"}]}):
         drawing, _ = Blocks(kind="blocks", file=path.name, **keys)._drawing(tmp_path)
         assert sum(p.layer.upper() == "OLD" for p in drawing.blocks) >= 3
-        (note,) = [note for note in drawing.notes if "not read" in note]
+        (note,) = [note for note in drawing.notes if "does not display" in note]
         assert "(frozen)" not in note and "7 of layer 'STONE' (invisible)" in note
 
 

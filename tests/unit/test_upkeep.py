@@ -38,10 +38,19 @@ def sources(tmp_path: Path) -> Path:
     return tmp_path
 
 
+def _write_news(sources: Path) -> None:
+    """A line under the heading of the next version, which is empty after a release."""
+    path = sources / "CHANGELOG.md"
+    log, heading = path.read_text(encoding="utf-8"), "(unreleased)\n"
+    path.write_text(log.replace(heading, f"{heading}\n- News.\n", 1), encoding="utf-8")
+    release.git(sources, "commit", "-qam", "News")
+
+
 def test_a_release_sets_the_version_everywhere(sources: Path) -> None:
     before = release.current(sources)
     major, minor, _ = release.numbers(before)
     version = f"{major}.{minor + 1}.0"
+    _write_news(sources)
     assert release.release(sources, version, "2026-12-01").stat().st_size > 1000
     for name, (left, right) in release.PLACES.items():
         text = (sources / name).read_text(encoding="utf-8")
