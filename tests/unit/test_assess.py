@@ -186,7 +186,7 @@ def test_a_run_that_ends_while_blocks_move_is_prolonged() -> None:
     assert not short["rocking"].settled
     rows = {v.strategy: v for v in whole["assess"].verdicts}
     for name in ("rocking", "dem"):
-        assert rows[name].outcome != "open" and "continued to" in rows[name].parameters, rows[name]
+        assert rows[name].outcome != "open" and "was extended to" in rows[name].parameters, rows[name]
     assert whole["rocking"].settled and not whole["dem"].still_moving
 
 

@@ -226,7 +226,7 @@ def test_a_strut_takes_moment_from_the_ring_beam():
 def test_reinforcement_needs_the_strength_of_concrete_and_room():
     walls = [{"name": "wall", "start": [0, 0], "end": [5, 0], "thickness": 0.3, "openings": [DOOR]}]
     beam = {"storey": 1, "depth": 0.3, "material": "concrete", "reinforcement": BARS}
-    with pytest.raises(BadGeometry, match=r"requires a compressive_strength in \[materials.concrete\]"):
+    with pytest.raises(BadGeometry, match=r"requires `compressive_strength` in \[materials.concrete\]"):
         building(walls, ring_beams=[beam]).frame(FREE)
     with pytest.raises(DeckError, match="does not fit in a beam with a depth of"):
         building(walls, ring_beams=[beam | {"reinforcement": BARS | {"cover": 0.15}}])

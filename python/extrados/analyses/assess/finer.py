@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from extrados import kinds
 from extrados.analyses.assess import hazard, strategies
 from extrados.analyses.assess.budget import OutOfTime
 from extrados.analyses.assess.reasons import explained
@@ -44,12 +43,7 @@ def _check_run(work: Work, name: str) -> None:
     row, keys = work.rows[name], work.choices[name].keys
     runs: list[tuple[str, dict[str, Any], float]] = []
     if name == "dem":
-        options = work.results[name].asked
-        half = (
-            {"time_step": 0.5 * options["time_step"]}
-            if options.get("time_step")
-            else {"fraction": 0.5 * kinds.table("analysis", "dem").model_fields["fraction"].default}
-        )
+        half = {"time_step": 0.5 * work.results[name]["time_step_s"]}
         runs.append(("rigid contacts", _rigid(keys) | ONE_RUN, 1.0))
         runs.append(("half the time step", keys | half | ONE_RUN, 1.0))
         keys = keys | ONE_RUN
