@@ -150,7 +150,7 @@ def follow(
         "end_time": end,
         "output_step": min(options.output_step, end),
         "step": options.time_step or 0.0,
-        "fraction": options.fraction,
+        "fraction": options.step_fraction(space=not isinstance(model, Model)),
         "settle_damping": model.values.settle_damping,
         "stop_at_rest": True,
         "rigid": options.rigid,
