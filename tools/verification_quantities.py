@@ -94,6 +94,7 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
     ),
     "restitution": (r"restitution", r"rebound$"),
     "frequency and period": (r"frequency_parameter", r"period_s$", r"frequency_Hz$"),
+    "stress": (r"stress_at_rest_Pa$",),
     "damping and stiffness of contacts": (r"damping_ratio", r"critical_beta", r"joint_stiffness"),
     "time and number of impacts": (r"bounces$", r"airborne_time", r"impact_times", r"impacts$", r"half_cycle", r"collapse_time"),
     "rotation": (r"rotation_rad", r"peak_rotation_upper", r"critical_rotation", r"rotation_ratio"),

@@ -404,7 +404,7 @@ def test_what_runs_is_ok(path: Path) -> None:
     assert check_building(read_deck(path)).complaints == []
 
 
-TOO_LONG = r"analysis\.output_step: a history of 1e\+08 s in steps of \S+ s is too long to store: give an output_step of at least \S+ s$"
+TOO_LONG = r"analysis\.output_step: a history of 1e\+08 s in steps of \S+ s is too long to store: give an `output_step` of at least \S+ s$"
 
 
 @pytest.mark.parametrize(

@@ -95,16 +95,20 @@ def test_a_footing_that_settles_tilts_a_slab_on_three_posts(tmp_path: Path, solv
 
 @pytest.mark.parametrize("solver", ["compliant", "nonsmooth"])
 def test_a_spreading_arch_moves_as_its_section_does(tmp_path: Path, solver: str) -> None:
-    """Elements of the plane and of space: the right springing spreads by 1 % of the span, hinges open alike."""
-    section = make_deck({"structure": ARCH, "analysis": {"kind": "tilt"}}).building.blocks()
+    """Elements of the plane and of space: the right springing spreads by 1 % of the span, hinges open alike.
+
+    An even number of voussoirs has one joint at the crown; with a keystone the hinge opens at either of its joints.
+    """
+    arch = {**ARCH, "voussoirs": 6}
+    section = make_deck({"structure": arch, "analysis": {"kind": "tilt"}}).building.blocks()
     plane_moves = [{"joint": section.joint_names[-1], "dx": 0.03, "dy": -0.01, "duration": 2.0}]
-    text = extrados.export({"structure": ARCH, "material": {"density": 2000.0}, "analysis": [{"kind": "tilt"}]}, "compas")
+    text = extrados.export({"structure": arch, "material": {"density": 2000.0}, "analysis": [{"kind": "tilt"}]}, "compas")
     (tmp_path / "stones.json").write_text(text)
     file = {"kind": "blocks", "file": "stones.json", "unit": "m"}
     solids = make_deck({"structure": file, "analysis": {"kind": "tilt", "direction": 0.0}}, tmp_path).building.solids()
     right = int(np.argmax([p[:, 0].mean() for p in solids.polygon]))
     space_moves = [{"joint": solids.joint_names[right], "dx": 0.03, "dz": -0.01, "duration": 2.0}]
-    plane = run(ARCH, plane_moves, end_time=2.3, solver=solver)
+    plane = run(arch, plane_moves, end_time=2.3, solver=solver)
     space = run(file, space_moves, tmp_path, end_time=2.3, direction=0.0, solver=solver)
     assert plane.status == space.status == "ok", plane.reason or space.reason
     centroid = plane.arrays["place"].numbers[-1, :, :2] - plane.arrays["place"].numbers[0, :, :2]

@@ -153,4 +153,4 @@ def test_a_wall_whose_spandrel_lifts_off_a_pier_says_why_it_does_not_rock(stones
     deck.write_text(f'[structure]\n{structure}\n{PULSE}\n[[analysis]]\nkind = "rocking"')
     (told,) = extrados.run(deck).analyses
     assert told["status"] == "refused"
-    assert told["reason"].endswith("degrees of freedom instead of one, because it opens along the whole of spandrel 1 on pier 1")
+    assert told["reason"].endswith("degrees of freedom instead of one, because the mechanism opens along the whole of spandrel 1 on pier 1")

@@ -6,7 +6,7 @@ from extrados.analyses.assess import hazard, strategies
 from extrados.analyses.assess.budget import OutOfTime
 from extrados.analyses.assess.reasons import explained
 from extrados.analyses.assess.work import ONE_RUN, Work
-from extrados.analyses.dem.tables import IN_PLANE, OF_SPRINGS
+from extrados.analyses.dem.tables import OF_SPRINGS
 
 #: Factors on the motion in a finer check
 PERTURBED = (0.999, 1.001)
@@ -43,8 +43,7 @@ def _check_run(work: Work, name: str) -> None:
     row, keys = work.rows[name], work.choices[name].keys
     runs: list[tuple[str, dict[str, Any], float]] = []
     if name == "dem":
-        options = work.results[name].asked
-        half = {"time_step": 0.5 * options["time_step"]} if options.get("time_step") else {"fraction": 0.5 * IN_PLANE}
+        half = {"time_step": 0.5 * work.results[name]["time_step_s"]}
         runs.append(("rigid contacts", _rigid(keys) | ONE_RUN, 1.0))
         runs.append(("half the time step", keys | half | ONE_RUN, 1.0))
         keys = keys | ONE_RUN
