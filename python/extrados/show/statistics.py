@@ -237,15 +237,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.errorbar(level, value, yerr=bars, fmt="o", color=color, markersize=4, capsize=2, linewidth=0.9, label=f"{label}, counted")
         if isinstance(r, DemFragility) and any(r.censored):
             low, high = run.array(name, "stripe_bound_low"), run.array(name, "stripe_bound_high")
-            ax.vlines(
-                level,
-                low,
-                high,
-                color=style.THRUST,
-                alpha=0.3,
-                linewidth=6,
-                label="collapse: range if all censored runs stand or all collapse",
-            )
+            ax.vlines(level, low, high, color=style.THRUST, alpha=0.3, linewidth=6, label="collapse: range with censored runs")
         if "stripe_rule_least" in arrays:
             ax.fill_between(
                 level,
@@ -285,6 +277,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_title(f"{r.motions} motions at {len(level)} levels")
         ax.legend(loc="best")
         points = f"Points: share of the motions that cause collapse at each intensity, with {100 * r.confidence:g} % Wilson intervals."
+        if isinstance(r, DemFragility) and any(r.censored):
+            points += " Wide bars: range of this share from all censored runs standing to all collapsing."
         curves = (
             "Solid curve: fitted probability of collapse at an intensity, with its bootstrap band. Dash-dotted curve: fitted probability "
             "that a motion causes collapse at this intensity or a lower one (interval-censored likelihood)."
@@ -343,13 +337,16 @@ def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         right.errorbar(d, p, yerr=np.maximum([p - low, high - p], 0.0), fmt="o-", color=style.THRUST, capsize=3, markersize=4)
         right.set_ylim(-0.02, 1.02)
         right.set_ylabel("probability of collapse")
-        right.set_title(f"share of the motions that cause collapse, with {100 * r.confidence:g} % interval")
+        right.set_title(f"motions that cause collapse, {100 * r.confidence:g} % interval")
         for ax in (left, right):
             ax.set_xlabel("duration of the motion t_d [s]")
         return [
             (
                 style.save(fig, folder, f"{name}-durations"),
-                ("Greatest rotation (Fig. 6-8) and probability of collapse, plotted over the duration of the motion."),
+                (
+                    "Left: greatest rotation (Fig. 6-8). Right: share of the motions that cause collapse, with 95 % intervals. Both are "
+                    "plotted over the duration of the motion."
+                ),
             )
         ]
 
