@@ -614,7 +614,7 @@ class Sweep(KindResults):
     mechanisms: list[GoverningMechanism] = fact("mechanisms that govern in a part of the range of the key")
     changes: list[Change] = fact("values of the key at which another mechanism begins to govern")
     stable_limits: list[float] = fact(
-        "values of the key (in its unit) at which the structure begins or ceases to stand; empty if no such value is found"
+        "values of the key (in its unit) at which collapse under self-weight begins or ends; empty if no such value is found"
     )
     locked_limits: list[float] = fact("values of the key at which locking (no collapse mechanism exists) begins or ends")
     optimum_value: float = fact("value of the key with the greatest capacity, in the unit of the key")

@@ -369,7 +369,7 @@ def _words(options: Sweep, r: out.Sweep, located: bool) -> str:
     if locked:
         text += f" At {locked} the structure locks: beyond this value a load of this kind never causes collapse."
     if r.stable_limits:
-        text += f" The structure begins or ceases to stand at {', '.join(f'{v:.4g}' for v in r.stable_limits)}."
+        text += f" Collapse under self-weight begins or ends at {', '.join(f'{v:.4g}' for v in r.stable_limits)}."
     counts = {status: sum(gap.status == status for gap in r.gaps) for status in ("cannot-stand", "no-answer")}
     if counts["cannot-stand"]:
         text += f" At {counts['cannot-stand']} of {len(r.values)} values the structure cannot stand (capacity 0)."
