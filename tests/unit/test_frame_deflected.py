@@ -157,7 +157,7 @@ def test_a_wall_without_a_rigid_mechanism_leaves_the_pushovers_as_they_are():
     data = deck("flexible", compressive_strength=0.2e6)
     rows, analysis = walls_of(data)
     assert [row["wall"] for row in rows if row["rigid_acceleration_g"] is None] == ["south"]
-    assert any("Wall 'south'" in text and "0.75 of the compressive strength" in text for text in analysis["warnings"])
+    assert any("wall 'south'" in text and "0.75 of the compressive strength" in text for text in analysis["warnings"])
     data["analysis"][0]["deflected_walls"] = False
     (alone,) = extrados.run(data, threads=1).analyses
     assert alone["results"]["runs"] == analysis["results"]["runs"]

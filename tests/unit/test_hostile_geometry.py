@@ -75,7 +75,7 @@ def test_ground_of_many_segments_takes_little_memory() -> None:
 
 def test_what_would_be_compared_too_often_is_reported(monkeypatch) -> None:
     monkeypatch.setattr("extrados.model.geometry.contacts.MOST_COMPARED", 10_000)
-    with pytest.raises(BadGeometry, match=r"more than 10,000 such pairs.*fewer points"):
+    with pytest.raises(BadGeometry, match=r"more than 10,000 pairs of edges .*fewer points"):
         find_contacts([ring(200, 5.0), ring(200, 5.5)], NO_GROUND, 1e-4)
     monkeypatch.setattr("extrados.model.geometry.contacts.MOST_KEPT", 100)
     monkeypatch.setattr("extrados.model.geometry.contacts.MOST_COMPARED", 10_000_000)

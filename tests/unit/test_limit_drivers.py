@@ -83,7 +83,7 @@ def test_a_sweep_claims_no_optimum_where_there_is_none() -> None:
 def test_a_sweep_of_no_number_is_refused() -> None:
     bridge = {"kind": "bridge", "spans": [{"span": 8.0, "rise": 2.5, "thickness": 0.5}]}
     refused = run(bridge, kind="sweep", vary="spans.²", start=1, stop=2)
-    assert refused.status == "refused" and "expected a number from 0 to 0" in refused.reason
+    assert refused.status == "refused" and "give a number from 0 to 0" in refused.reason
 
 
 def test_sweep_finds_changes_and_optimum() -> None:

@@ -252,7 +252,7 @@ def test_a_section_that_nothing_crosses_has_no_place() -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"face": 5.0}, "buttress: the face is 5 m"),
+        ({"face": 5.0}, "buttress: the distance from the face to the vertical axis of the arch is 5 m"),
         ({"face": 9.5}, "Give a distance between"),
         ({"buttress_width": 0.2}, "must be behind the springing"),
         ({"height": 0.1}, "ground"),

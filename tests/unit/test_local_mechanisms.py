@@ -192,7 +192,7 @@ def test_what_a_wall_on_a_plan_cannot_be_asked_is_refused_with_its_key() -> None
     apart["walls"].append(inner)
     assert "wall 'inner' of `bears_on` is not adjacent to the floor" in refused(apart)
     for name, value in {"height": 5.0, "width": 2.0, "ties": [{"height": 2.0, "force": 1e3}], "storeys": 3, "building_height": 9.0}.items():
-        assert f"remove {name}" in refused(house(), **{name: value})
+        assert f"remove `{name}`" in refused(house(), **{name: value})
     tie = {"ties": [{"from": "front", "to": "back", "area": 1e-3}]}
     abutting = {"supports": {"abutting_wall": "left"}}
     assert "supports.abutting_wall" in refused(house(), abutting), tie

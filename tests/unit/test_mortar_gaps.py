@@ -94,7 +94,7 @@ def test_a_corner_with_joints_of_mortar(gap: float, noise: float, within: float)
 def test_a_drawing_without_gaps_stays() -> None:
     stones = corner()
     made, notes = with_closed_joints(stones, 0.01, 1e-4)
-    assert notes == ("mortar_gap 10 mm: no joint is drawn as a gap",)
+    assert notes == ("`mortar_gap` 10 mm: no joint is drawn as a gap, so the key has no effect",)
     assert all((one.parts[0].vertices == two.parts[0].vertices).all() for one, two in zip(made, stones, strict=True))
 
 

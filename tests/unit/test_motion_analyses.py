@@ -263,7 +263,7 @@ def test_wrong_decks(deck, words) -> None:
         ({"kind": "record", "file": "none.at2"}, "no such file"),
         ({"kind": "record", "file": "../x"}, "out of the deck's folder"),
         ({"kind": "suite", "pattern": "*.none"}, "no records match"),
-        ({"kind": "suite", "files": ["r.at2"], "member": 2}, "has 1 records"),
+        ({"kind": "suite", "files": ["r.at2"], "member": 2}, "has only 1 records"),
         ({"kind": "generated", "mmi": 11, "duration": 3.0}, "expected 4 to 9"),
         ({"kind": "generated", "mmi": 6, "duration": 3.0, "spectrum": "../s.csv"}, "out of the deck's folder"),
         ({"kind": "compatible", "code": "table", "table": "t.csv"}, "no such file"),

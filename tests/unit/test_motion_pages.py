@@ -97,7 +97,7 @@ def test_why_a_motion_is_not_pulse_like() -> None:
     pulse = 2.0 * np.pi / 1.5 * np.cos(2.0 * np.pi * (time - 2.0) / 1.5) * ((time > 2.0) & (time < 3.5))
     strong, weak, late = classify(0.8 * pulse, step), classify(0.2 * pulse, step), classify(0.8 * pulse[::-1], step)
     assert strong.pulse_like and strong.fails == ()
-    assert not weak.pulse_like and len(weak.fails) == 1 and weak.fails[0].startswith("the peak velocity of 20")
+    assert not weak.pulse_like and len(weak.fails) == 1 and weak.fails[0].startswith("the peak velocity is 20")
     noise = classify(np.random.default_rng(1).normal(0.0, 3.0, 4000), step)
     assert any("the pulse indicator" in why and "not above 0.85" in why for why in noise.fails)
     assert late.pulse_like == (late.fails == ())
@@ -120,7 +120,7 @@ def test_the_page_says_why_which_station_and_which_event(tmp_path: Path) -> None
     found = study(tmp_path / "RSN6.AT2")
     assert found["title"] == "Imperial Valley-02, 5/19/1940" and found["station"] == "El Centro Array #9, 180"
     assert "RSN6 (Imperial Valley-02, 5/19/1940, El Centro Array #9, 180): peak" in found.answer
-    assert "not pulse-like: " in found.answer and "is not above 30" in found.answer
+    assert "not pulse-like: " in found.answer and "not above 30 cm/s" in found.answer
     assert found["wavelet_pulse"]["fails"]
     shipped = make_deck({"motion": {"kind": "record", "file": "extrados:el-centro-1940"}, "analysis": {"kind": "motion"}})
     page = run_analyses(Context(shipped, threads=1))[0]

@@ -167,7 +167,7 @@ def test_bad_openings_through_storeys_name_wall_and_place(z, more, words):
         ({"bears_on": ["south"]}, "two different walls"),
         ({"bears_on": ["south", "east"]}, "'south' and 'east' are not parallel"),
         ({"bears_on": ["east", "west"]}, "wall 'east' has a gable on top of storey 1"),
-        ({"load": 0.0}, "a roof of rafters requires load"),
+        ({"load": 0.0}, "a roof of rafters requires `load`"),
     ],
 )
 def test_bad_roofs(change, words):

@@ -78,7 +78,7 @@ def test_units_and_steps_are_required(tmp_path) -> None:
     with pytest.raises(RecordError, match="above 5 g"):
         record_motion(read_record(write(tmp_path, "1\n-341.7\n3\n")), Treatment(time_step=0.02, unit="m/s^2"))
     at2 = read_record(write(tmp_path, AT2))
-    with pytest.raises(RecordError, match=r"the deck 0\.02"):
+    with pytest.raises(RecordError, match=r"the deck gives 0\.02"):
         record_motion(at2, Treatment(time_step=0.02))
 
 

@@ -202,7 +202,7 @@ def test_rows_that_belong_together_and_what_is_refused() -> None:
     swept = extrados.sweep(DECK, over=table, progress=lambda done, total, text: told.append(done))
     assert swept.rows[0]["tilt.status"] == "ok" and swept.rows[1]["tilt.status"] != "ok" and swept.rows[1]["tilt.reason"]
     assert swept.shape is None and swept.dataset()["structure.radius"].dims == ("member",) and told[-1] == 2
-    assert np.isnan(swept.column("tilt.collapse_acceleration_g")[1]) and "2 of 2 members" in repr(swept)
+    assert np.isnan(swept.column("tilt.collapse_acceleration_g")[1]) and "2 of 2 runs" in repr(swept)
     with pytest.raises(KeyError, match=r"its columns are structure\.radius, structure\.thickness"):
         swept.column("raduis")
 

@@ -207,7 +207,7 @@ def test_a_membrane_is_a_floor(tmp_path):
     [
         ([{"name": "back", "support": "fixed"}], "'back': the file has no such group; its groups are front, ground, side"),
         ([{"name": "front", "thickness": 0.2}], "the structure has no support: give a group `support`"),
-        ([{"name": "ground", "thickness": 0.2}], "group 'ground': thickness is a key for elements"),
+        ([{"name": "ground", "thickness": 0.2}], "group 'ground': `thickness` is a key for elements"),
         ([{"name": "ground"}], "this group has no properties"),
         ([{"name": "front", "material": "steel"}, {"name": "ground", "support": "fixed"}], r"no \[materials.steel\]"),
         ([{"name": "front", "membrane": True}, {"name": "ground", "support": "fixed"}], "a membrane must be horizontal"),

@@ -194,7 +194,7 @@ def test_the_budget_ends_constant_loads_too() -> None:
     loads = {"constant": [{"kind": "spread", "edge": "top", "fx": 6.5e3}], "constant_damage": True}
     push = [{"name": "push", "reference": [{"kind": "spread", "edge": "top", "fx": 1e3}]}]
     result = run_deck(wall(push, budget=0.01, events=4000, ripple=0.01, mesh={"size": 0.0625}, **loads))
-    assert "budget of 0.01 s" in result.answer
+    assert "`budget` of 0.01 s" in result.answer
     assert result.verdict.outcome == "open"
 
 

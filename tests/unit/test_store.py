@@ -341,7 +341,7 @@ def test_a_summary_of_any_size_is_not_read(tmp_path, with_figures, monkeypatch) 
     [
         ("kind", ["tilt"], "analyses.0.kind: input should be a valid string"),
         ("name", {"a": 1}, "analyses.0.name: input should be a valid string"),
-        ("name", "other", "results.h5: this file contains 'tilt', which is not listed in summary.json"),
+        ("name", "other", "results.h5: this file contains the array 'tilt', which is not listed in summary.json"),
         ("assumptions", 5, "analyses.0.assumptions: input should be a valid dict"),
         ("assumptions", {"a": {"b": 1}}, "analyses.0.assumptions.a.value: field required"),
         ("answer", None, "analyses.0.answer"),

@@ -167,7 +167,7 @@ def test_beside_a_wall_the_load_acts_away_from_it():
 def test_one_sense_alone_is_warned_of():
     asked = {"kind": "strengthen", "acceleration": "0.3 g", "direction": "+x", "ties": [ANCHOR]}
     warnings = run({"structure": WALL, "analysis": [asked]}).warnings
-    assert any("Towards -x the existing building carries 0.2 g" in text for text in warnings)
+    assert any("Towards -x, the existing building carries 0.2 g" in text for text in warnings)
 
 
 def test_a_tie_of_a_range_passes_over_places_between_stones():
@@ -191,7 +191,7 @@ def test_a_target_in_the_plane_is_not_met_where_no_state_without_dilatancy_is_fo
     both = answer(asked["ties"][:2])
     assert alone.meets_target and alone.bound == "upper"
     assert len(both.results.combination) == 2 and both.results.combination_meets_target
-    assert "Combination of ties of least total force: " in both.answer
+    assert "Combination of ties with the least total force: " in both.answer
     monkeypatch.setattr(common, "MOST_BESIDE", 0)
     unmet = answer(asked["ties"][2:]).results.interventions[0]
     assert not unmet.meets_target and "friction governs, and no state without dilatancy was found" in unmet.reason

@@ -77,7 +77,7 @@ def test_a_hidden_layer_that_the_deck_names_is_read(tmp_path: Path) -> None:
     for keys in ({"layers": ["STONE", "VIEW", "OLD"]}, {"layer": [{"name": "OLD", "role": "stones"}]}):
         drawing, _ = Blocks(kind="blocks", file=path.name, **keys)._drawing(tmp_path)
         assert sum(p.layer.upper() == "OLD" for p in drawing.blocks) >= 3
-        (note,) = [note for note in drawing.notes if "not read" in note]
+        (note,) = [note for note in drawing.notes if "does not display are not read" in note]
         assert "(frozen)" not in note and "7 of layer 'STONE' (invisible)" in note
 
 

@@ -77,7 +77,7 @@ def test_a_line_that_closes_no_stone_is_reported(tmp_path: Path) -> None:
     path = sketch(tmp_path / "open.dxf", draw)
     (told,) = (w for w in run({"file": path.name}, tmp_path).warnings if "no other line" in w)
     assert "1 end of loose lines meets no other line" in told
-    assert "4 mm from the next line (see join_tolerance)" in told
+    assert "4 mm from the next line (see `join_tolerance`)" in told
     assert len(run({"file": path.name, "join_tolerance": "5 mm"}, tmp_path)["centroid"]) == 2
 
 

@@ -101,12 +101,14 @@ def test_the_failure_of_a_state_is_that_by_which_its_top_moves(slip: float, rota
 
 
 def test_a_wall_of_many_units_has_units_twice_as_large(tmp_path, monkeypatch) -> None:
+    """Unless a course would have fewer than five of them."""
     decks = []
     monkeypatch.setattr(tool, "_followed", lambda _, deck: decks.append(deck) or tool.Predicted())
-    for row in ("1,x,A,brick,2,2,0.25,250,62.5,5,,,0.3,0.6,0.5,0.6,F,40,40", "2,x,B,brick,1,1,0.25,250,62.5,5,,,0.3,0.6,0.5,0.6,F,40,40"):
+    for height, length in ((2, 3), (2, 2), (1, 1)):  # 384, 256 and 64 units; a course has 12, 8 and 4
+        row = f"1,x,A,brick,{height},{length},0.25,250,62.5,5,,,0.3,0.6,0.5,0.6,F,40,40"
         tool.by_units(walls(tmp_path, row)[0])
     sizes = [(deck["structure"]["unit_length"], deck["structure"]["unit_height"]) for deck in decks]
-    assert sizes == [pytest.approx((0.5, 0.125)), pytest.approx((0.25, 0.0625))]
+    assert sizes == [pytest.approx((0.5, 0.125)), pytest.approx((0.25, 0.0625)), pytest.approx((0.25, 0.0625))]
 
 
 @pytest.mark.parametrize(

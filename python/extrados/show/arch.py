@@ -274,7 +274,7 @@ def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: 
     with style.figure(8.0, 3.6, columns=2, width_ratios=[2.4, 1]) as (fig, (over_time, along)):
         joints = np.arange(friction.shape[1])
         mesh = over_time.pcolormesh(t[part], joints, shown.T, cmap="YlOrBr", vmin=0.0, vmax=1.0, shading="nearest", rasterized=True)
-        fig.colorbar(mesh, ax=over_time, label="required coefficient of friction (maximum shown: 1)")
+        fig.colorbar(mesh, ax=over_time, label="required coefficient of friction", extend="max")
         over_time.set_xlabel("time [s]")
         over_time.set_ylabel("joint")
         over_time.grid(False)
