@@ -122,7 +122,7 @@ def test_a_result_has_a_largest_size(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(contained, "ROOM", 2_000_000_000)
     assert read_contained(f"{HERE}:give_much", b"").size == 20_000_000
     monkeypatch.setattr(contained, "LARGEST", 100_000_000)
-    with pytest.raises(Unreadable, match="gives more than 100 MB"):
+    with pytest.raises(Unreadable, match="contains more than 100 MB"):
         read_contained(f"{HERE}:give_much", b"")
 
 

@@ -33,6 +33,8 @@ def sources(tmp_path: Path) -> Path:
     for name in ["CHANGELOG.md", *release.PLACES]:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text((ROOT / name).read_text(encoding="utf-8"), encoding="utf-8")
+    log = (tmp_path / "CHANGELOG.md").read_text(encoding="utf-8")
+    (tmp_path / "CHANGELOG.md").write_text(log.replace(" (unreleased)\n\n", " (unreleased)\n\n- News.\n\n", 1), encoding="utf-8")
     for words in (["init", "-q"], ["config", "user.email", "a@b"], ["config", "user.name", "a"], ["add", "."], ["commit", "-qm", "all"]):
         subprocess.run(["git", "-C", tmp_path, *words], check=True)
     return tmp_path
