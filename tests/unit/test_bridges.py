@@ -131,7 +131,10 @@ def test_the_parts_of_a_viaduct_fill_each_others_places() -> None:
 @pytest.mark.parametrize(
     ("keys", "words"),
     [
-        ({"spans": [SPAN, SPAN], "piers": [{"width": 0.4, "height": 3.0}]}, "pier: the arches on both sides overlap in this pier: give a width of at least 0.96 m"),
+        (
+            {"spans": [SPAN, SPAN], "piers": [{"width": 0.4, "height": 3.0}]},
+            "pier: the arches on both sides overlap in this pier: give a width of at least 0.96 m",
+        ),
         ({"abutments": {"width": 0.2, "height": 3.0}}, "left abutment: with a width of 0.2 m, the abutment ends before"),
         ({"backing": {"height": 2.7}}, "backing: the top at 2.7 m must lie between"),
         ({"backing": {"height": 0.1}}, "backing: the top at 0.1 m must lie between"),
