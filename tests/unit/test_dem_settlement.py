@@ -100,7 +100,11 @@ def test_elements_held_by_mortar_say_that_limit_analysis_disagrees(tmp_path) -> 
     ("space", "spread"), [("", 0.15), ("direction = 0.0\n", 0.05), ("direction = 0.0\n", 0.01)], ids=["plane", "space", "slight"]
 )
 def test_what_rigid_contacts_hold_by_jamming_is_doubted(tmp_path, space, spread) -> None:
+    """Or refused, where the impulses of the wedge are not found."""
     found = answered(tmp_path, keystone(spread), analysis=f'solver = "nonsmooth"\n{space}')
+    if spread == 0.01:
+        assert found.status == "refused" and "jam under high friction" in found.reason
+        return
     assert found.status == "ok", found.reason
     assert "stands under its own weight" in found.answer
     assert "with springs, the structure collapses while it settles" in found.answer

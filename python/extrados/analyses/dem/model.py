@@ -103,8 +103,8 @@ def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end
     wedged = (
         (
             f". In {run.effort.open_steps} of these steps the solver did not find the impulses at the rigid "
-            "contacts: blocks that touch on several sides jam under very high friction. Give a coefficient "
-            'of friction up to 1, or use solver = "compliant"'
+            "contacts: blocks that touch on several sides jam under high friction. Use "
+            'solver = "compliant", or a smaller coefficient of friction'
         )
         if run.effort.open_steps
         else ""
