@@ -226,7 +226,7 @@ def test_variants_make_a_band(tmp_path):
         ('drives = [{ wall = "9", storey = 1 }]', "wall '9' does not exist"),
         ('drives = [{ wall = "1", storey = 2 }]', "storey 2 does not exist"),
         ('drives = [{ wall = "1", storey = 1 }]\ndirection = 30', "along x or y"),
-        ('settlements = [{ wall = "1", x = [5.0, 6.0], down = 0.01 }]', "no support of wall '1'"),
+        ('settlements = [{ wall = "1", x = [5.0, 6.0], down = 0.01 }]', "no support restrains wall '1'"),
         ('control = { wall = "1", storey = 4 }', "storey 4 does not exist"),
     ],
 )

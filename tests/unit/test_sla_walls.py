@@ -304,7 +304,7 @@ def test_a_measured_curve_is_drawn(tmp_path) -> None:
         (TEST.replace("(kN)", "(psi)"), "expected a unit"),
         (TEST.replace("least", "lowest"), "expected displacement with load"),
         (TEST.replace("9,11", "9,eleven"), "test.csv:5: expected 3 numbers"),
-        (TEST.replace("18,22", "22,18"), "least load exceeds"),
+        (TEST.replace("18,22", "22,18"), "`least` exceeds"),
         ("", "at least two lines of numbers"),
     ],
 )

@@ -198,7 +198,7 @@ def test_foundations_at_unlike_levels() -> None:
     portal = rows(box("low", 0, 0, 1, 3), box("high", 3, 1, 1, 2), box("lintel", 0, 3, 4, 0.5))
     hanging = run({"block": portal})
     assert any(
-        "horizontal soles of 'high' at y = 1 m have no support. If they stand on the ground, give `foundation_levels`" in w
+        "horizontal soles of 'high' at y = 1 m have no support. If the ground supports them, give `foundation_levels`" in w
         for w in hanging.warnings
     )
     found = run({"block": portal, "foundation_levels": [0.0, "1 m"]})

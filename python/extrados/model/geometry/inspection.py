@@ -127,7 +127,7 @@ class Inspection:
             named = ", ".join(f"'{self.names[i]}'" for i, _ in self.levels[:SHOWN])
             found.append(
                 f"the horizontal soles of {named}{(' and others' if len(self.levels) > SHOWN else '')} at y = "
-                f"{', '.join(f'{y:.4g}' for y in heights)} m have no support. If they stand on the ground, give `foundation_levels`"
+                f"{', '.join(f'{y:.4g}' for y in heights)} m have no support. If the ground supports them, give `foundation_levels`"
             )
         return found
 
