@@ -319,7 +319,7 @@ def test_the_worst_motion_under_a_cap(outcome: str, cap: float, least: float | N
     decided(verdict, want, conditions.violated)
     assert (verdict.demand, verdict.capacity, verdict.unit) == (cap, least, "g")
     assert ("does not cause collapse" in verdict.statement) == (want != "collapses")
-    assert (f"above {least or 0.0:.3g} g" in verdict.statement) == (least is not None)
+    assert (f"exceeds {least or 0.0:.3g} g" in verdict.statement) == (least is not None)
 
 
 @QUICK
