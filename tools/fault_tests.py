@@ -346,7 +346,7 @@ def caught_by(place: Path, fault: Fault, patience: int, properties: bool = False
     if fault.in_python:
         planted = Planted(fault.file.removeprefix(f"{PACKAGE}/"), fault.line, fault.new)
         return failing_relation(place, fault, planted, patience)
-    core = place / "cores" / f"{time.monotonic_ns()}.so"  # the loader keeps what it has loaded by its name
+    core = place / "cores" / f"{time.monotonic_ns()}.so"  # a new name: the loader does not load a file of the same name twice
     plant(place, fault)
     try:
         if properties:

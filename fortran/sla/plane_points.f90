@@ -7,7 +7,7 @@
 !> that opens. Cracks follow a row of quadrilaterals, whose mean width is the area over the mean projection of both
 !> diagonals onto the crack (Oliver 1989); they cross triangles wherever they meet them, and a straight line through a
 !> mesh meets each as often as its extent across the line is wide: the extent then makes the energy right on average.
-!> The same holds for quadrilaterals that a crack askew to their rows opens on its way, where options%extent asks for it.
+!> With options%extent, the same holds for quadrilaterals crossed by a crack that is oblique to the rows of the mesh.
 !>
 !> Strength and energy of a crack of bedded masonry are interpolated, f(n) = nx^2 fx + ny^2 fy: the very stress across
 !> it as it opens, where a = 1 (see sla_bedding). Where a > 1 this stress is less, and strength and energy of that crack

@@ -38,7 +38,7 @@ HypothesisProvider._local_constants = Constants()
 ROOT = str(Path(extrados.__file__).parent)
 #: Seconds of a processor after which a test ends the process by SIGPROF, by its name; others: none
 PATIENCE: dict[str, float] = {}
-#: Of the package, where faults are planted: all functions, and those that keep what they answered
+#: Functions of the package in which faults are planted: all of them, and those with a cache
 FUNCTIONS: list[FunctionType] = []
 CACHES: list[Any] = []
 #: Whether the test itself has passed
@@ -55,11 +55,11 @@ def load() -> None:
     FUNCTIONS[:] = [f for f in gc.get_objects() if isinstance(f, FunctionType) and f.__code__.co_filename.startswith(ROOT)]
     CACHES[:] = caches()
     gc.collect()
-    gc.freeze()  # what is frozen is not written to by a collection, and stays shared
+    gc.freeze()  # the garbage collector does not write to frozen objects, so forks share their memory
 
 
 def caches() -> list[Any]:
-    """Functions of the package that keep what they answered."""
+    """Functions of the package that cache their results."""
     return [kept for kept in gc.get_objects() if isinstance(kept, _lru_cache_wrapper) and kept.__module__.startswith("extrados")]
 
 

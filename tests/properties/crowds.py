@@ -26,7 +26,7 @@ from extrados.model.geometry.solids.polyhedra import box
 from extrados.views.rigid import rigid_bodies
 
 DRAWS = st.integers(0, 10**6)
-#: Powers of two by which lengths, times and masses are multiplied: all numbers of a run stay what they are but for these
+#: Powers of two by which lengths, times and masses are multiplied: the numbers of a run change only by these factors
 POWERS = [0.25, 0.5, 2.0, 4.0]
 
 

@@ -1,4 +1,4 @@
-"""Corners that crush on springs: closed form of a block, limit analysis with crushing, energy, what is refused."""
+"""Corners that crush on springs: closed form of a block, limit analysis with crushing, energy, refusals."""
 
 import tomllib
 
@@ -37,7 +37,7 @@ def test_a_block_stands_up_to_its_strength(share: float, stands: bool) -> None:
 
 
 def test_a_great_strength_changes_nothing_and_the_ledger_closes() -> None:
-    """A rocking block, and one that rocks without dashpots between corners that crush: what they hold is in the balance."""
+    """A rocking block, and one that rocks without dashpots between corners that crush: the energy balance includes the energy stored in them."""
     pulse = pieces([0.0, 0.3, 0.6], [0.4 * G, -0.4 * G])
     times = np.arange(0.0, 0.7, 0.01)
     dry = dem.run(block(0.0), dem.Options(0.7), pulse, times=times)

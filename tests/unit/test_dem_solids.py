@@ -188,7 +188,7 @@ def test_dowels_stand_in_the_lower_drum(tmp_path) -> None:
 
 
 def test_dowels_of_a_deck(tmp_path) -> None:
-    """They hold drums that friction does not, come out where told, and are told, with springs and on rigid contacts."""
+    """Dowels hold drums that friction alone does not, and disengage at their reach; springs and rigid contacts report both."""
     slippery = (
         COLUMN
         + 'friction = 0.1\n[[joints.types]]\njoints = ["ground"]\nfriction = 1.0\n'
