@@ -82,6 +82,17 @@ class Model:
         r = self.rigid
         return dem.Bodies(r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints, self.ties.core)
 
+    def drawn(self) -> dem_run.DrawnContacts:
+        """The joints between two bodies, for their forces and places."""
+        one, on = self.assembly, self.between
+        ends = [np.stack([one.p[j], one.q[j]]) for j in on]
+        return dem_run.DrawnContacts(np.array([self.rigid.joints[j] for j in on]), ends, one.normal[on])
+
+    @property
+    def between(self) -> list[int]:
+        """Numbers of the joints between two bodies, in which groups of blocks have none."""
+        return [j for j, pair in enumerate(self.rigid.joints) if pair is not None]
+
 
 class Falls(Refused):
     """A block falls under its own weight."""
