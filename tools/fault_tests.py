@@ -110,8 +110,8 @@ BROKE = 2
 SLOWER = 5.0
 #: Chapters of the property suite that ask kernels themselves
 KERNEL_CHAPTERS = ("kernels.py", "crowds.py")
-#: Share of the cases of tests of less than so many seconds, which costs less than what others take
-OF_QUICK, QUICK = 0.5, 0.3
+#: Share of the cases of those of less than so many seconds
+OF_KERNELS, QUICK = 0.5, 0.3
 #: Share of the cases with which relations whose results change are repeated
 MORE = 0.3
 #: Fates of a fault that no relation finds: a result changes, none does, no relation runs through it, the time is up
@@ -309,7 +309,7 @@ def failing_relation(place: Path, fault: Fault, planted: Planted, patience: int)
     chosen = relations_of(place, fault)
     if not chosen:
         return NOWHERE
-    shares = {row: OF_QUICK if row.seconds < QUICK else float(SHARE) for row in chosen}
+    shares = {row: OF_KERNELS if row.chapter in KERNEL_CHAPTERS and row.seconds < QUICK else float(SHARE) for row in chosen}
     by, seen = finding(place, planted, shares, patience)
     before = {row.test: row.results for row in chosen}
     turned = {row.test for row in seen if row.results != before[row.test]}
