@@ -232,6 +232,7 @@ def test_a_whole_run_runs_enough_buildings() -> None:
     assert sum(most_of(r) for r in RELATIONS.values() if not r.awaits) >= WHOLE
 
 
+@pytest.mark.skipif("EXTRADOS_FAULTS" in os.environ, reason="with a fault planted the smallest case is not looked for")
 def test_a_broken_relation_shows_the_smallest_deck() -> None:
     """The machine itself: a relation that no building keeps."""
 
