@@ -2,7 +2,7 @@
 module dem_model
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
-   use dem_bodies, only : body, body_set, body_turn
+   use dem_bodies, only : body, body_set, body_turn, load_moment
    use dem_clock, only : begin_step, end_step
    use dem_contacts, only : contact_pair, contact_set, overlap, measure_overlap, measure_springs, choose_edges
    use dem_crushing, only : crush_corners
@@ -130,7 +130,7 @@ contains
       end if
    end subroutine prepare_step
 
-   !> Velocity that follows from the forces of the last step; clears the forces
+   !> Velocity that follows from the forces of the last step; of the next ones it leaves the constant loads
    pure subroutine predict_velocity(model, b)
       type(block_model), intent(in) :: model
       type(body), intent(inout) :: b
@@ -146,9 +146,9 @@ contains
             ((model%pull(1) + model%pull_before(1) - 2.0_wp * model%gravity(1)) * b%vx &
             + (model%pull(2) + model%pull_before(2) - 2.0_wp * model%gravity(2)) * b%vy)
       end if
-      b%fx = 0.0_wp
-      b%fy = 0.0_wp
-      b%moment = 0.0_wp
+      b%fx = b%load(1)
+      b%fy = b%load(2)
+      b%moment = load_moment(b)
       b%touched = .false.
    end subroutine predict_velocity
 
