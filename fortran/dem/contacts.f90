@@ -159,27 +159,38 @@ contains
       type(body), intent(in) :: a           !! owner of the reference edge
       type(body), intent(in) :: b           !! owner of the incident edge
       type(overlap), intent(out) :: now
-      type(overlap) :: was
       integer :: i
       call measure_overlap(pair, a, b, now)
-      if (any(now%meets /= pair%point%meets)) then
-         if (minval(now%gap) < 0.0_wp .or. any(pair%point%closed)) then
-            call measure_overlap(pair, a, b, was, pair%point%meets)
-            do i = 1, 2
-               if (now%meets(i) == pair%point(i)%meets .or. pair%point(i)%meets == unknown) cycle
-               call pass_on(pair%point(i), was%gap(i), now%gap(i), pair%given_up)
-            end do
-         end if
-         pair%point%meets = now%meets
-      end if
+      if (now%meets(1) /= pair%point(1)%meets .or. now%meets(2) /= pair%point(2)%meets) call meet_others(pair, a, b, now)
       do i = 1, 2
          associate (point => pair%point(i))
-            if (now%gap(i) >= 0.0_wp) point%filled = 0.0_wp
-            if (now%gap(i) < 0.0_wp .and. now%width <= 0.0_wp .and. .not. point%closed) point%filled = now%gap(i)
+            if (now%gap(i) >= 0.0_wp) then
+               if (point%filled < 0.0_wp) point%filled = 0.0_wp
+               cycle
+            end if
+            if (now%width <= 0.0_wp .and. .not. point%closed) point%filled = now%gap(i)
             now%gap(i) = now%gap(i) - point%filled
          end associate
       end do
    end subroutine measure_springs
+
+   !> The springs whose corners meet another edge than in the step before pass to its gap
+   pure subroutine meet_others(pair, a, b, now)
+      type(contact_pair), intent(inout) :: pair
+      type(body), intent(in) :: a
+      type(body), intent(in) :: b
+      type(overlap), intent(in) :: now
+      type(overlap) :: was
+      integer :: i
+      if (minval(now%gap) < 0.0_wp .or. any(pair%point%closed)) then
+         call measure_overlap(pair, a, b, was, pair%point%meets)
+         do i = 1, 2
+            if (now%meets(i) == pair%point(i)%meets .or. pair%point(i)%meets == unknown) cycle
+            call pass_on(pair%point(i), was%gap(i), now%gap(i), pair%given_up)
+         end do
+      end if
+      pair%point%meets = now%meets
+   end subroutine meet_others
 
    !> A spring passes from one gap to another. Its energy would grow with a deeper overlap: it keeps its force there, and
    !> the difference of the gaps has none. With a lesser overlap it loses energy

@@ -65,7 +65,7 @@ contains
       integer :: i
 
       own = law
-      if (any(pair%given_up > 0.0_wp)) then
+      if (pair%given_up(1) + pair%given_up(2) > 0.0_wp) then
          pair%loss_before = pair%loss_before + pair%given_up * [1.0_wp / law%shear_stiffness, law%normal_stiffness]
          pair%given_up = 0.0_wp
       end if

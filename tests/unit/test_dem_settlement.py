@@ -11,6 +11,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.dem import standing
 from extrados.analyses.dem.from_deck import make_model
 from extrados.analyses.dem.settlement import TIMES, closed_settlement, farthest_settlement
+from extrados.analyses.dem.tables import IN_PLANE, IN_SPACE
 from extrados.core import dem, dem_run
 from extrados.core.ground import as_motion_set
 from extrados.decks.reader import read_text
@@ -118,7 +119,7 @@ def test_the_pulses_that_it_carries_are_doubted_too(tmp_path) -> None:
 
 
 @pytest.mark.parametrize("space", ["", "direction = 0.0\n"], ids=["plane", "space"])
-@pytest.mark.parametrize("spread", [-0.01, -0.1, -0.3])
+@pytest.mark.parametrize("spread", [-0.005, -0.01, -0.1, -0.3])
 def test_a_keystone_that_sits_is_not_doubted(tmp_path, space, spread) -> None:
     """One of slight taper sinks farther than closed joints give, until it sits."""
     found = answered(tmp_path, keystone(spread), analysis=f'solver = "nonsmooth"\n{space}')
@@ -134,6 +135,21 @@ def test_what_stands_by_its_weight_is_not_doubted(tmp_path, name, space) -> None
     found = extrados.run(deck).results[0]
     assert found.status == "ok" and "jammed" not in found.answer
     assert not any("wedged" in text or "no second method" in text for text in found.warnings)
+
+
+@pytest.mark.parametrize(("space", "fraction"), [("", IN_PLANE), ("direction = 0.0\n", IN_SPACE)], ids=["plane", "space"])
+def test_springs_check_rigid_contacts_in_the_steps_of_springs(tmp_path, monkeypatch, space, fraction) -> None:
+    taken = []
+    name = "SolidTask" if space else "Task"
+    task = getattr(standing, name)
+
+    def noted(*given):
+        taken.append(given[-1].fraction)
+        return task(*given)
+
+    monkeypatch.setattr(standing, name, noted)
+    assert answered(tmp_path, keystone(-0.3), analysis=f'solver = "nonsmooth"\n{space}').status == "ok"
+    assert taken == [fraction]
 
 
 @pytest.mark.parametrize("space", ["", "direction = 0.0\n"], ids=["plane", "space"])
