@@ -68,7 +68,7 @@ def run(context: Context, options: Tilt) -> Result:
         return solids.run(context, options)
     assembly: Assembly = building.blocks()
     limit = limit_of(building, options)
-    answer = answer_of(building, options, limit)
+    answer = answer_of(building, options, limit, context.threads)
     state, mechanism = answer.collapse_state, answer.mechanism
     result = Result("tilt")
     measures: Keys = assembly.measures
