@@ -1,6 +1,7 @@
 """tilt: the horizontal acceleration at which a structure becomes a mechanism (thesis chapter 3)."""
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 import numpy as np
@@ -199,9 +200,7 @@ def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, d
     if limit.associated and limit.friction is not None:
         told |= {"dilating_joints": dilating[1], "dilating_joints_opposite": dilating[-1]}
     beside = limit.without_dilatancy() if limit.associated and any(dilating.values()) else limit
-    followed: dict[int, Paths] = {}
-    if not limit.associated and limit.strength is None:
-        followed |= _paths(context, limit, [d for d in (1, -1) if limit.coulomb[d].falling is None], patient=True)
+    followed, bounds = ({}, {}) if limit.associated else _side_by_side(context, limit)
     for direction, end in ((1, ""), (-1, "_opposite")):
         try:
             if not limit.associated:
@@ -239,8 +238,9 @@ def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, d
             if told_doubt := doubt(paths, way):
                 result.warnings.append(told_doubt)
         found = beside.coulomb[direction]
-        bounds = beside.without_dilatancy_between(direction)
-        lower, upper = (None if g is None else direction * g for g in bounds)
+        if direction not in bounds:
+            bounds[direction] = beside.without_dilatancy_between(direction)
+        lower, upper = (None if g is None else direction * g for g in bounds[direction])
         state, mechanism = pair
         assert limit.friction is not None  # joints that cannot slide need no such state
         proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, limit.strength)
@@ -276,6 +276,15 @@ def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, d
                 f"the state without dilatancy {way} is not certified: the difference between its forces and its mechanism is {proof.zero_gap:.1e} g"
             )
     return told
+
+
+def _side_by_side(context: Context, limit: LimitAnalysis) -> tuple[dict[int, Paths], dict[int, tuple[float | None, float | None]]]:
+    """Load paths to +x (1) and to -x (-1), of those that the analysis needs, and the bounds of both with and without friction."""
+    followed: dict[int, Paths] = {}
+    if limit.strength is None:
+        followed |= _paths(context, limit, [d for d in (1, -1) if limit.coulomb[d].falling is None], patient=True)
+    with ThreadPoolExecutor(max(1, min(2, context.threads))) as pool:
+        return followed, dict(zip((1, -1), pool.map(limit.without_dilatancy_between, (1, -1)), strict=True))
 
 
 def _paths(context: Context, limit: LimitAnalysis, directions: Sequence[int], *, patient: bool) -> dict[int, Paths]:
