@@ -28,6 +28,7 @@ from extrados.analyses.limit.tables import Tilt
 from extrados.analyses.needs import in_space
 from extrados.limit.answer import CENTRAL, Answer
 from extrados.limit.certificate import Certificate, certify
+from extrados.limit.coulomb import CoulombState
 from extrados.limit.finite_motion import finite_motion
 from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_joint, thrust_of
@@ -247,21 +248,7 @@ def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, d
         certified = proof.holds(state.gamma)
         if certified or not limit.associated:
             told[f"collapse_acceleration_non_associated{end}_g"] = direction * state.gamma
-            r, starts = found.residuals, [direction * g for g in found.starts]
-            told[f"non_dilatant{end}"] = out.NonDilatant(
-                associated_g=upper,
-                frictionless_g=lower,
-                starts_g=starts,
-                spread_g=max(starts) - min(starts),
-                certified=certified,
-                zero_gap_g=proof.zero_gap,
-                equilibrium_residual=proof.equilibrium,
-                friction_residual=proof.friction,
-                tension_residual=proof.tension,
-                overlap_residual=proof.closing,
-                complementarity_residual=r.complementarity,
-                work_residual=r.work,
-            )
+            told[f"non_dilatant{end}"] = _least_state(found, proof, certified, lower, upper, direction)
         if found.falling is not None:
             stone = limit.assembly.block_names[found.falling]
             result.warnings.append(
@@ -276,6 +263,26 @@ def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, d
                 f"the state without dilatancy {way} is not certified: the difference between its forces and its mechanism is {proof.zero_gap:.1e} g"
             )
     return told
+
+
+def _least_state(
+    found: CoulombState, proof: Certificate, certified: bool, lower: float | None, upper: float | None, direction: int
+) -> out.NonDilatant:
+    starts = [direction * g for g in found.starts]
+    return out.NonDilatant(
+        associated_g=upper,
+        frictionless_g=lower,
+        starts_g=starts,
+        spread_g=max(starts) - min(starts),
+        certified=certified,
+        zero_gap_g=proof.zero_gap,
+        equilibrium_residual=proof.equilibrium,
+        friction_residual=proof.friction,
+        tension_residual=proof.tension,
+        overlap_residual=proof.closing,
+        complementarity_residual=found.residuals.complementarity,
+        work_residual=found.residuals.work,
+    )
 
 
 def _side_by_side(context: Context, limit: LimitAnalysis) -> tuple[dict[int, Paths], dict[int, tuple[float | None, float | None]]]:
