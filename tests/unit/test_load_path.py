@@ -8,11 +8,14 @@ import pytest
 from test_dilatancy import coursed
 from test_noisy_solids import corner
 
+from extrados import _core
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.context import Context
 from extrados.analyses.limit import solids as driver
 from extrados.analyses.limit.solid_sliding import slide
 from extrados.analyses.sequence import run_analyses
+from extrados.core.calls import interruptible
+from extrados.core.errors import Cancelled
 from extrados.decks.reader import make_deck
 from extrados.limit.certificate import Certificate, certify
 from extrados.limit.errors import NoAnswer
@@ -110,6 +113,29 @@ def test_paths_in_the_plane_end_at_printed_states() -> None:
         state, mechanism = collapse_along_path(limit, direction, 0.5)
         assert direction * state.gamma == pytest.approx(0.35582, abs=1e-5)
         assert certify(limit.assembly, limit.loads, 0.65, state, mechanism, None).holds(state.gamma)
+
+
+def test_threads_change_nothing() -> None:
+    """Both directions and all ratios side by side give the results of one thread, digit by digit."""
+    tables = {"structure": {**WALL, "units": 3, "courses": 3}, "joints": {"friction": 0.65}, "analysis": {"kind": "tilt"}}
+    tables["analysis"]["friction_rule"] = "non-associated"
+    shown: list[tuple[float, float]] = []
+    rows = []
+    for threads in (1, 2):
+        context = Context(make_deck(tables), threads=threads, progress=lambda done, total, text: shown.append((done, total)))
+        rows.append(run_analyses(context)[0].results)
+    assert rows[0] == rows[1] and len(rows[0].load_paths) == len(rows[0].load_paths_opposite) == len(RATIOS)
+    assert {done for done, _ in shown} == set(range(2 * len(RATIOS) + 1)) and {total for _, total in shown} == {2 * len(RATIOS)}
+
+
+def test_ctrl_c_ends_a_path() -> None:
+    limit = LimitAnalysis(make_deck({"structure": WALL, "analysis": {"kind": "tilt"}}).building.blocks(), 0.65, associated=False)
+    with interruptible(), pytest.raises(Cancelled):
+        _core.api_support.set_cancel(1)
+        try:
+            collapse_along_path(limit, 1, 0.5)
+        finally:
+            _core.api_support.set_cancel(0)
 
 
 def test_the_first_step_is_that_of_bonded_joints(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,6 +1,7 @@
 """The whole answer of limit analysis about an assembly from one call."""
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from typing import TypeVar
@@ -120,8 +121,9 @@ def assess(
     associated: bool = True,
     loads: Loads | None = None,
     limit: LimitAnalysis | None = None,
+    threads: int = 1,
 ) -> Answer:
-    """Everything limit analysis has to say; CannotStand where no line is admissible upright.
+    """Everything limit analysis has to say; CannotStand where no line is admissible upright. threads: of both directions without dilatancy.
 
     The collapse loads are the answer: thrusts and central lines that the solver gives up on become warnings.
     """
@@ -140,8 +142,12 @@ def assess(
             name: beside(f"the minimum and maximum thrust of the {name}", partial(limit.thrust, joints), (NoAnswer,))
             for name, joints in assembly.chains.items()
         }
-        state, mechanism = limit.collapse(1)
-        back, back_mechanism = limit.collapse(-1)
+        if limit.associated or threads < 2:
+            both = [limit.collapse(direction) for direction in (1, -1)]
+        else:
+            with ThreadPoolExecutor(2) as pool:
+                both = list(pool.map(limit.collapse, (1, -1)))
+        (state, mechanism), (back, back_mechanism) = both
         if not back.gamma <= 0.0 <= state.gamma:
             raise NoEquilibrium
     except Immovable:

@@ -84,11 +84,11 @@ def limit_of(building: Building, options: LimitAnalysisTable, *, forces_only: bo
         raise Refused(str(error), WHOLE) from None
 
 
-def answer_of(building: Building, options: LimitAnalysisTable, limit: LimitAnalysis | None = None) -> Answer:
+def answer_of(building: Building, options: LimitAnalysisTable, limit: LimitAnalysis | None = None, threads: int = 1) -> Answer:
     """The whole answer; CannotStand where a certificate proves that the structure collapses under its own weight."""
     assembly, limit = building.blocks(), limit or limit_of(building, options)
     try:
-        answer = assess(assembly, limit=limit)
+        answer = assess(assembly, limit=limit, threads=threads)
     except CannotStand as proof:
         if mended := mended_capacity(building, options, 0.0):
             raise CannotStand(f"{proof}; {mended}", proof.motion, proof.neglects) from None

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import count
 
+from extrados.core.calls import interruptible
 from extrados.limit.certificate import Certificate
 from extrados.limit.errors import NoAnswer
 from extrados.limit.load_path import PATIENT, QUICK, RATIOS
@@ -36,7 +37,7 @@ def follow_beside(pushes: Sequence[Follow], threads: int, progress: Callable[[in
         progress(next(done), len(tasks))
         return row
 
-    with ThreadPoolExecutor(max(1, min(threads, len(tasks)))) as pool:
+    with interruptible(), ThreadPoolExecutor(max(1, min(threads, len(tasks)))) as pool:
         rows = list(pool.map(one, tasks))
     return [rows[k : k + len(RATIOS)] for k in range(0, len(rows), len(RATIOS))]
 

@@ -1,6 +1,7 @@
 """tilt: the horizontal acceleration at which a structure becomes a mechanism (thesis chapter 3)."""
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 import numpy as np
@@ -27,6 +28,7 @@ from extrados.analyses.limit.tables import Tilt
 from extrados.analyses.needs import in_space
 from extrados.limit.answer import CENTRAL, Answer
 from extrados.limit.certificate import Certificate, certify
+from extrados.limit.coulomb import CoulombState
 from extrados.limit.finite_motion import finite_motion
 from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_joint, thrust_of
@@ -68,7 +70,7 @@ def run(context: Context, options: Tilt) -> Result:
         return solids.run(context, options)
     assembly: Assembly = building.blocks()
     limit = limit_of(building, options)
-    answer = answer_of(building, options, limit)
+    answer = answer_of(building, options, limit, context.threads)
     state, mechanism = answer.collapse_state, answer.mechanism
     result = Result("tilt")
     measures: Keys = assembly.measures
@@ -199,9 +201,7 @@ def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, d
     if limit.associated and limit.friction is not None:
         told |= {"dilating_joints": dilating[1], "dilating_joints_opposite": dilating[-1]}
     beside = limit.without_dilatancy() if limit.associated and any(dilating.values()) else limit
-    followed: dict[int, Paths] = {}
-    if not limit.associated and limit.strength is None:
-        followed |= _paths(context, limit, [d for d in (1, -1) if limit.coulomb[d].falling is None], patient=True)
+    followed, bounds = ({}, {}) if limit.associated else _side_by_side(context, limit)
     for direction, end in ((1, ""), (-1, "_opposite")):
         try:
             if not limit.associated:
@@ -239,29 +239,16 @@ def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, d
             if told_doubt := doubt(paths, way):
                 result.warnings.append(told_doubt)
         found = beside.coulomb[direction]
-        bounds = beside.without_dilatancy_between(direction)
-        lower, upper = (None if g is None else direction * g for g in bounds)
+        if direction not in bounds:
+            bounds[direction] = beside.without_dilatancy_between(direction)
+        lower, upper = (None if g is None else direction * g for g in bounds[direction])
         state, mechanism = pair
         assert limit.friction is not None  # joints that cannot slide need no such state
         proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, limit.strength)
         certified = proof.holds(state.gamma)
         if certified or not limit.associated:
             told[f"collapse_acceleration_non_associated{end}_g"] = direction * state.gamma
-            r, starts = found.residuals, [direction * g for g in found.starts]
-            told[f"non_dilatant{end}"] = out.NonDilatant(
-                associated_g=upper,
-                frictionless_g=lower,
-                starts_g=starts,
-                spread_g=max(starts) - min(starts),
-                certified=certified,
-                zero_gap_g=proof.zero_gap,
-                equilibrium_residual=proof.equilibrium,
-                friction_residual=proof.friction,
-                tension_residual=proof.tension,
-                overlap_residual=proof.closing,
-                complementarity_residual=r.complementarity,
-                work_residual=r.work,
-            )
+            told[f"non_dilatant{end}"] = _least_state(found, proof, certified, lower, upper, direction)
         if found.falling is not None:
             stone = limit.assembly.block_names[found.falling]
             result.warnings.append(
@@ -276,6 +263,35 @@ def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, d
                 f"the state without dilatancy {way} is not certified: the difference between its forces and its mechanism is {proof.zero_gap:.1e} g"
             )
     return told
+
+
+def _least_state(
+    found: CoulombState, proof: Certificate, certified: bool, lower: float | None, upper: float | None, direction: int
+) -> out.NonDilatant:
+    starts = [direction * g for g in found.starts]
+    return out.NonDilatant(
+        associated_g=upper,
+        frictionless_g=lower,
+        starts_g=starts,
+        spread_g=max(starts) - min(starts),
+        certified=certified,
+        zero_gap_g=proof.zero_gap,
+        equilibrium_residual=proof.equilibrium,
+        friction_residual=proof.friction,
+        tension_residual=proof.tension,
+        overlap_residual=proof.closing,
+        complementarity_residual=found.residuals.complementarity,
+        work_residual=found.residuals.work,
+    )
+
+
+def _side_by_side(context: Context, limit: LimitAnalysis) -> tuple[dict[int, Paths], dict[int, tuple[float | None, float | None]]]:
+    """Load paths to +x (1) and to -x (-1), of those that the analysis needs, and the bounds of both with and without friction."""
+    followed: dict[int, Paths] = {}
+    if limit.strength is None:
+        followed |= _paths(context, limit, [d for d in (1, -1) if limit.coulomb[d].falling is None], patient=True)
+    with ThreadPoolExecutor(max(1, min(2, context.threads))) as pool:
+        return followed, dict(zip((1, -1), pool.map(limit.without_dilatancy_between, (1, -1)), strict=True))
 
 
 def _paths(context: Context, limit: LimitAnalysis, directions: Sequence[int], *, patient: bool) -> dict[int, Paths]:
