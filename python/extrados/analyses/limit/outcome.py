@@ -9,7 +9,7 @@ import numpy as np
 from extrados.analyses.batches import Swept
 from extrados.limit.programme import Mechanism
 from extrados.model.geometry.assembly import Assembly
-from extrados.results import limit as out
+from extrados.results.sweeps import SectionStatus
 
 if TYPE_CHECKING:
     from extrados.limit.solids import Programme
@@ -43,7 +43,7 @@ class Outcome:
     alone: float | None = None  # of the leeward buttress by itself
 
     @property
-    def status(self) -> out.SectionStatus:
+    def status(self) -> SectionStatus:
         """Whether it has a capacity, cannot stand, is locked, or has no answer."""
         if self.locked:
             return "locked"

@@ -22,7 +22,8 @@ from extrados.limit.programme import Mechanism
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.solids.assembly import SolidAssembly
-from extrados.results import limit as out
+from extrados.results import sweeps as out
+from extrados.results.limit import DILATANT
 from extrados.results.model import Array, Result, TableData
 from extrados.views.building import Building
 
@@ -376,5 +377,5 @@ def _words(options: Sweep, r: out.Sweep, located: bool) -> str:
     if counts["no-answer"]:
         text += f" {counts['no-answer']} of {len(r.values)} values have no result."
     if r.upper_bound_values:
-        text += f" For {len(r.upper_bound_values)} of the {len(r.values)} values, joints slide; the capacity is then an {out.DILATANT}."
+        text += f" For {len(r.upper_bound_values)} of the {len(r.values)} values, joints slide; the capacity is then an {DILATANT}."
     return text
