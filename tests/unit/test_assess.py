@@ -209,6 +209,7 @@ def test_a_finer_check_with_another_outcome_opens_the_verdict(monkeypatch: pytes
     def other(going, strategy, changed, kind, keys, *rest, **more):
         found = probe(going, strategy, changed, kind, keys, *rest, **more)
         if changed == "half the time step":
+            assert keys["time_step"] == pytest.approx(0.5 * going.results["dem"]["time_step_s"])
             going.probes[-1] = going.probes[-1].model_copy(update={"outcome": "collapses"})
         return found
 

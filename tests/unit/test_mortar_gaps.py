@@ -87,6 +87,8 @@ def test_a_corner_with_joints_of_mortar(gap: float, noise: float, within: float)
     assert len(made.a) == 55 and pushed(made, 90.0, 270.0) == pytest.approx(CLEAN, rel=within)
     assert made.mass.sum() == pytest.approx(assemble(corner()).mass.sum(), rel=1e-3)
     assert notes[0].startswith("48 joints that are drawn as gaps of ") and "The volume of the blocks increased by" in notes[0]
+    growth = float(notes[0].partition("increased by ")[2].partition(" %")[0])
+    assert 100.0 * gap < growth < 1000.0 * gap  # blocks of less than 1 m
     with pytest.raises(BadGeometry, match="touches neither another block"):
         assemble(with_closed_joints(stones, 0.5 * gap, tolerance)[0], tolerance)
 

@@ -86,10 +86,9 @@ def resized(table: Any, factor: float) -> Any:
     update = {}
     kind: type[BaseModel] = type(table)
     for name in kind.model_fields:
-        value, unit = getattr(table, name), unit_of(kind, name)
-        power = {"m": 1, "m^2": 2}.get(unit)
-        if power is not None:
-            update[name] = _times(value, factor**power)
+        value = getattr(table, name)
+        if unit_of(kind, name) == "m":
+            update[name] = _times(value, factor)
         elif isinstance(value, BaseModel):
             update[name] = resized(value, factor)
         elif isinstance(value, list) and any(isinstance(one, BaseModel) for one in value):
