@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 Signature = tuple[tuple[str, str], ...]
 #: Stands for a structure that no load of the kind brings down
 LOCKED: Signature = (("all", "locked"),)
+#: Stands for a structure without geometry, or whose capacity is not found; one that cannot stand has no marks
+UNKNOWN: Signature = (("all", "unknown"),)
 #: Marks the blocks that move in a mechanism of solids, in words
 MOVES = "m"
 

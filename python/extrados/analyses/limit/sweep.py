@@ -12,7 +12,7 @@ from extrados.analyses.changes import changed, read_table
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import values_of
 from extrados.analyses.limit.common import packed
-from extrados.analyses.limit.outcome import LOCKED, Outcome, Signature, outcomes_of
+from extrados.analyses.limit.outcome import LOCKED, UNKNOWN, Outcome, Signature, outcomes_of
 from extrados.analyses.limit.tables import Sweep
 from extrados.analyses.limit.variation import evaluate, spoken
 from extrados.analyses.needs import in_space
@@ -61,7 +61,7 @@ class Range:
             else:
                 table = read_table(type(own), data)
         except BadGeometry as error:
-            return Outcome(reason=str(error))
+            return Outcome(signature=UNKNOWN, reason=str(error))
         return evaluate(
             self.building.apart().having(**{self.table: table}),
             self.options,
@@ -103,11 +103,11 @@ def run(context: Context, options: Sweep) -> Result:
         [(v, o.signature) for v, o in zip(values, outcomes, strict=True)] + [(c["value"], c["after"]) for c in changes],
         key=lambda pair: pair[0],
     ):
-        if signature and signature != LOCKED:
+        if signature and signature not in (LOCKED, UNKNOWN):
             numbers.setdefault(signature, len(numbers) + 1)
     best, best_gamma = _optimum(context, ask, values, outcomes, locate)
     result = Result("sweep")
-    stable = [c for c in changes if not c["before"] or not c["after"]]
+    stable = [c for c in changes if () in (both := (c["before"], c["after"])) and UNKNOWN not in both]
     locks = [c["value"] for c in changes if LOCKED in (c["before"], c["after"])]
     r = out.Sweep(
         vary=options.vary,
@@ -219,7 +219,7 @@ class Between:
                     before = middle
                 else:
                     after = middle
-            gamma = before.gamma if before.signature else after.gamma
+            gamma = before.gamma if before.signature not in ((), UNKNOWN) else after.gamma
             found.append({"value": after.value, "before": before.signature, "after": after.signature, "gamma": gamma})
             low = after
         return found
