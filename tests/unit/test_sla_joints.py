@@ -3,6 +3,7 @@ limit analysis with friction."""
 
 import numpy as np
 import pytest
+from test_sla_stages import move, sliding
 
 from extrados.analyses.context import Context
 from extrados.analyses.sequence import run_analyses
@@ -333,51 +334,8 @@ def test_a_joint_that_first_slides_in_a_later_stage_keeps_the_energy(before: flo
     and at the end all energies are those of the push at once."""
 
     def push(*ends: float) -> dict:
-        last = run_analyses(
-            Context(
-                make_deck(
-                    {
-                        "structure": {
-                            "kind": "blocks",
-                            "depth": 1.0,
-                            "block": [
-                                {"name": "base", "points": [[0, 0], [1, 0], [1, 0.25], [0, 0.25]]},
-                                {"name": "top", "points": [[0, 0.25], [1, 0.25], [1, 0.5], [0, 0.5]]},
-                            ],
-                        },
-                        "material": {"density": 0.0, "young": 20e9, "poisson": 0.0},
-                        "joints": {
-                            "friction": 0.5,
-                            "normal_stiffness": 1e10,
-                            "shear_stiffness": 5e9,
-                            "types": [{"joints": ["ground"], "friction": "no-sliding", "tension": 1e8, "fracture_energy": 1e9}],
-                        },
-                        "analysis": [
-                            {
-                                "kind": "sla",
-                                "mesh": {"size": 0.25},
-                                "events": 400,
-                                "constant": [{"kind": "pressure", "edge": "top", "value": 1e5}],
-                                "stages": [
-                                    {
-                                        "name": f"to {end}",
-                                        "target_displacement": abs(end),
-                                        "reference": [
-                                            {
-                                                "kind": "displacement",
-                                                "direction": "x",
-                                                "parts": [{"edge": "top", "ratio": float(np.sign(end))}],
-                                            }
-                                        ],
-                                    }
-                                    for end in ends
-                                ],
-                            }
-                        ],
-                    }
-                )
-            )
-        )[0].results["stages"]
+        deck = make_deck(sliding(*(move(end, name=f"to {end}") for end in ends)))
+        last = run_analyses(Context(deck))[0].results["stages"]
         assert all(stage["energy_residual_ratio"] < 1e-12 for stage in last)
         return last[-1]
 

@@ -127,35 +127,35 @@ def test_cyclic_loads_keep_the_energy() -> None:
     assert {"stage_1_event_load", "stage_2_state_displacement", "stage_3_envelope_load"} <= set(shown)
 
 
+#: A block on a joint that slides, under a pressure
+SLIDING = {
+    "structure": {
+        "kind": "blocks",
+        "depth": 1.0,
+        "block": [
+            {"name": "base", "points": [[0, 0], [1, 0], [1, 0.25], [0, 0.25]]},
+            {"name": "top", "points": [[0, 0.25], [1, 0.25], [1, 0.5], [0, 0.5]]},
+        ],
+    },
+    "material": {"density": 0.0, "young": 20e9, "poisson": 0.0},
+    "joints": {
+        "friction": 0.5,
+        "normal_stiffness": 1e10,
+        "shear_stiffness": 5e9,
+        "types": [{"joints": ["ground"], "friction": "no-sliding", "tension": 1e8, "fracture_energy": 1e9}],
+    },
+}
+
+
+def sliding(*stages: dict) -> dict:
+    """The deck of SLIDING with stages after the pressure."""
+    pressed = [{"kind": "pressure", "edge": "top", "value": 1e5}]
+    return {**SLIDING, "analysis": [{"kind": "sla", "mesh": {"size": 0.25}, "constant": pressed, "events": 400, "stages": [*stages]}]}
+
+
 def test_joints_that_slide_keep_their_friction_from_stage_to_stage() -> None:
     """A block on a joint: pushed until it slides, pushed back until it slides the other way; friction has no cohesion."""
-    data = {
-        "structure": {
-            "kind": "blocks",
-            "depth": 1.0,
-            "block": [
-                {"name": "base", "points": [[0, 0], [1, 0], [1, 0.25], [0, 0.25]]},
-                {"name": "top", "points": [[0, 0.25], [1, 0.25], [1, 0.5], [0, 0.5]]},
-            ],
-        },
-        "material": {"density": 0.0, "young": 20e9, "poisson": 0.0},
-        "joints": {
-            "friction": 0.5,
-            "normal_stiffness": 1e10,
-            "shear_stiffness": 5e9,
-            "types": [{"joints": ["ground"], "friction": "no-sliding", "tension": 1e8, "fracture_energy": 1e9}],
-        },
-        "analysis": [
-            {
-                "kind": "sla",
-                "mesh": {"size": 0.25},
-                "constant": [{"kind": "pressure", "edge": "top", "value": 1e5}],
-                "events": 400,
-                "stages": [move(2e-4, name="push"), move(-2e-4, name="back")],
-            }
-        ],
-    }
-    found = run_deck(data).results["stages"]
+    found = run_deck(sliding(move(2e-4, name="push"), move(-2e-4, name="back"))).results["stages"]
     assert found[0]["end_load_N"] == pytest.approx(0.5 * 1e5, rel=0.03)
     assert found[1]["start_load_N"] == pytest.approx(-found[0]["end_load_N"], rel=1e-6)
     assert found[1]["end_load_N"] == pytest.approx(0.5 * 1e5, rel=0.03)

@@ -87,19 +87,13 @@ def held(
 def calls(stones: ArchAssembly, shaken: np.ndarray) -> Calls:
     table = MechanismModel(stones)
     link = table.linkages[0]
+    names = ("mass", "centroid", "inertia", "joined", "point", "row", "driver", "sense", "side")
+    of_link = {name: getattr(link, name) for name in names}
     return [
         (
             chains,
             dict(
-                mass=link.mass,
-                centroid=link.centroid,
-                inertia=link.inertia,
-                joined=link.joined,
-                point=link.point,
-                row=link.row,
-                driver=link.driver,
-                sense=link.sense,
-                side=link.side,
+                **of_link,
                 q=np.array([0.0, 0.02]),
                 restitution=(0.8, 0.8),
                 samples=shaken,
@@ -116,15 +110,7 @@ def calls(stones: ArchAssembly, shaken: np.ndarray) -> Calls:
         (
             held,
             dict(
-                mass=link.mass,
-                centroid=link.centroid,
-                inertia=link.inertia,
-                joined=link.joined,
-                point=link.point,
-                row=link.row,
-                driver=link.driver,
-                sense=link.sense,
-                side=link.side,
+                **of_link,
                 sort=np.array([restraints.LENGTH]),
                 ends=np.array([[0, 1]]),
                 points=np.array([[[-12.0, 0.0], link.centroid[0]]]),
