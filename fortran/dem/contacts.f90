@@ -23,6 +23,7 @@ module dem_contacts
       real(wp) :: damping_loss = 0.0_wp   !! [J]
       real(wp) :: slip(2) = 0.0_wp      !! on rigid contacts: sliding velocities of the last step and of the one before [m/s]
       real(wp) :: late = 0.0_wp         !! shear impulse that acts in the next step, see dem_rigid [N s]
+      real(wp) :: crushed = 0.0_wp      !! by how much the corner has crushed, below 0 where it is open [m]
       logical :: closed = .false.
       logical :: bonded = .false.       !! cohesion and tension not lost yet
    end type contact_point
@@ -77,7 +78,7 @@ module dem_contacts
       real(wp) :: x(2), y(2)            !! contact points [m]
       real(wp) :: gap(2)                !! distances, negative where they overlap [m]
       real(wp) :: width                 !! of the common stretch [m]
-      logical :: propped(2) = .false.   !! without dashpot: open but pressed, or crushed altogether
+      real(wp) :: elastic(2) = 1.0_wp   !! share of the springs where corners crush, see spring_share
    end type overlap
 
 contains
