@@ -23,7 +23,7 @@ module dem_contacts
       real(wp) :: damping_loss = 0.0_wp   !! [J]
       real(wp) :: slip(2) = 0.0_wp      !! on rigid contacts: sliding velocities of the last step and of the one before [m/s]
       real(wp) :: late = 0.0_wp         !! shear impulse that acts in the next step, see dem_rigid [N s]
-      real(wp) :: crushed = 0.0_wp      !! by how much the corner has crushed, below 0 where it is open [m]
+      real(wp) :: crushed = 0.0_wp      !! by how much the corner has crushed [m]
       logical :: closed = .false.
       logical :: bonded = .false.       !! cohesion and tension not lost yet
    end type contact_point

@@ -33,7 +33,7 @@ contains
       trial = -stiffness * now%gap
       force = 0.0_wp
       if (any(trial > 0.0_wp)) call press_within(trial, law%strength * now%width, force)
-      crushed = (trial - force) / stiffness
+      crushed = max((trial - force) / stiffness, 0.0_wp)
       now%elastic = spring_share((force - pair%point%spring_n) / stiffness, crushed - pair%point%crushed, now%gap >= 0.0_wp)
       pair%point%crushed = crushed
       if (.not. any(trial > 0.0_wp)) return

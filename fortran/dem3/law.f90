@@ -362,8 +362,8 @@ contains
       end do
       call press_face(corner, spring, -spring * gap, law%normal_stiffness, law%strength, overlap, force, pair%crushed)
       do i = 1, pair%points
-         elastic(i) = spring_share((force(i) - pair%point(i)%spring_n) / spring(i), overlap(i) - pair%point(i)%overlap, &
-            gap(i) >= 0.0_wp)
+         elastic(i) = spring_share((force(i) - pair%point(i)%spring_n) / spring(i), &
+            max(overlap(i), 0.0_wp) - max(pair%point(i)%overlap, 0.0_wp), gap(i) >= 0.0_wp)
          pair%point(i)%overlap = overlap(i)
          gap(i) = merge(-force(i) / spring(i), max(gap(i), 0.0_wp), force(i) > 0.0_wp)
       end do
