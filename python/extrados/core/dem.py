@@ -7,7 +7,7 @@ import numpy as np
 
 from extrados import _core
 from extrados.core.calls import indices, integers, real
-from extrados.core.dem_run import STILL, BodyModel, FoundRun, Law, RunOptions, SupportMove, Ties
+from extrados.core.dem_run import STILL, BodyModel, DrawnContacts, FoundRun, Law, RunOptions, SupportMove, Ties
 from extrados.core.errors import check
 from extrados.core.ground import Ground, as_motion_set
 from extrados.schema.constants import GRAVITY
@@ -34,6 +34,7 @@ class Bodies:
     laws: list[Law]
     joints: dict[tuple[int, int], int] = field(default_factory=dict)
     ties: Ties | None = None
+    drawn: DrawnContacts | None = None
     load: np.ndarray | None = None
 
 
@@ -118,6 +119,7 @@ class Model(BodyModel[Run]):
             if bodies.load is not None:
                 check(_core.api_dem.loads(self.handle, real("load", np.transpose(bodies.load), (4, n))), "constant loads")
             self._put_ties(bodies.ties, lambda place, body: place[:, :2] - bodies.centroid[body])
+            self._put_drawn(bodies.drawn, lambda place, body: place[:, :2] - bodies.centroid[body])
             self._put_moves(moves, _core.api_dem.moves)
             self._put_surroundings()
             self._put_options(settle=shift is None and rate is None)
@@ -146,6 +148,9 @@ class Model(BodyModel[Run]):
             law = indices("joints", [law for *_, law in listed], len(bodies.laws), (None,))
             check(_core.api_dem.joints(self.handle, joints, law), "joints")
             self._joints = np.array([pair for *pair, _ in listed])
+
+    def _drawn_arm(self, arm: np.ndarray) -> np.ndarray:
+        return arm[..., :2]
 
     def _put_surroundings(self) -> None:
         o = self.options

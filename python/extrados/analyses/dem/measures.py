@@ -34,10 +34,10 @@ LAST_PART = 20
 MOST_TRACKED = 24
 
 
-def openings(model: Model, run: dem.Run, drawn: bool = False) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def openings(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """How far each joint gapes at its ends p and q, and its slip at the closed end (time, joint) [m].
 
-    Measured from the settled state, or from the blocks as drawn, slip along the mean of the two faces, gaps along the normal of either face, whichever is less: the
+    Measured from the settled state, slip along the mean of the two faces, gaps along the normal of either face, whichever is less: the
     corner of a block that slid and turned lies on the face of the other, at an angle. NaN where both sides are one body.
     """
     a = model.assembly
@@ -48,7 +48,7 @@ def openings(model: Model, run: dem.Run, drawn: bool = False) -> tuple[np.ndarra
             continue
         ends, turns = [], []
         for body in pair:
-            place, rest = run.place[:, body], np.append(model.rigid.centroid[body], 0.0) if drawn else run.settled[body]
+            place, rest = run.place[:, body], run.settled[body]
             turn = place[:, 2] - rest[2]
             c, s = np.cos(turn), np.sin(turn)
             moved = []

@@ -90,7 +90,18 @@ class Model:
                 laws.append(one)
             joints[pair] = numbers[one]
         r = self.rigid
-        return dem.Bodies(r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints, self.ties.core, self.load)
+        return dem.Bodies(r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints, self.ties.core, load=self.load)
+
+    def drawn(self) -> dem_run.DrawnContacts:
+        """The joints between two bodies, for their forces and places."""
+        one, on = self.assembly, self.between
+        ends = [np.stack([one.p[j], one.q[j]]) for j in on]
+        return dem_run.DrawnContacts(np.array([self.rigid.joints[j] for j in on]), ends, one.normal[on])
+
+    @property
+    def between(self) -> list[int]:
+        """Numbers of the joints between two bodies, in which groups of blocks have none."""
+        return [j for j, pair in enumerate(self.rigid.joints) if pair is not None]
 
 
 class Falls(Refused):
@@ -201,10 +212,19 @@ def doubts_of_rigid_mortar(values: ContactValues) -> list[str]:
 def _doubts_of_tension(values: ContactValues) -> list[str]:
     if not np.nanmax(values.tension, initial=0.0) > 0.0:
         return []
-    return [
+    found = [
         "the tensile strength of mortar acts at the ends or corners of a joint, so the joint carries up to three times the bending "
         "moment of an elastic joint"
     ]
+    less = np.flatnonzero(values.tension * values.friction > values.cohesion * (1.0 + 1e-9))
+    if len(less):
+        most = values.cohesion[less] / values.friction[less]
+        j = int((values.tension[less] - most).argmax())
+        found.append(
+            f"{len(less)} joints carry less tension than the deck gives, because Coulomb's law allows at most cohesion / friction: "
+            f"{most[j] / 1000.0:.3g} kPa instead of {values.tension[less][j] / 1000.0:.3g} kPa"
+        )
+    return found
 
 
 def unconverged(effort: dem_run.Effort) -> list[str]:

@@ -19,6 +19,7 @@ from extrados.model.geometry.anchors import moved_joints
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.geometry.water import water_pressure
+from extrados.model.properties import NO_SLIDING_COEFFICIENT
 from extrados.model.structures.arch import ArchAssembly
 from extrados.model.structures.block import BlockAssembly
 from extrados.views.building import Building
@@ -46,6 +47,7 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
         yield lambda: _refuse_bars(building)
     if _rigid(options):
         yield lambda: _refuse_springs(building)
+        yield lambda: _refuse_sliding_mortar(building)
     if isinstance(options, tables.SpatialDem) and options.crushing:
         yield lambda: _refuse_crushing(building, None, _rigid(options))
     if isinstance(options, tables.Dem) and options.thrust:
@@ -109,6 +111,17 @@ def _refuse_springs(building: Building) -> None:
         raise Refused(text, ("supports", "stiffness"))
 
 
+def _refuse_sliding_mortar(building: Building, solids: SolidAssembly | None = None) -> None:
+    """Refused where mortar is on rigid contacts that cannot slide: Coulomb's law allows it no tension. solids: in space."""
+    cohesion, tension, friction = (building.joint_property(name, solids) for name in ("cohesion", "tension", "friction"))
+    if ((np.fmax(cohesion, tension) > 0.0) & (friction >= NO_SLIDING_COEFFICIENT)).any():
+        raise Refused(
+            'rigid contacts with friction = "no-sliding" cannot have mortar: give the coefficient of friction, or remove `cohesion` and '
+            "`tension`",
+            ("joints", "friction"),
+        )
+
+
 def _refuse_crushing(building: Building, solids: SolidAssembly | None, rigid: bool) -> None:
     """Refused where corners are to crush without a strength, on rigid contacts, or at joints with mortar."""
     key = ("analysis", "crushing")
@@ -168,6 +181,8 @@ def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: Solid
     yield lambda: refuse_stones(stones)
     if options.crushing:
         yield lambda: _refuse_crushing(building, stones, _rigid(options))
+    if _rigid(options):
+        yield lambda: _refuse_sliding_mortar(building, stones)
     yield lambda: refuse_rigid_ties(building)
     yield building.strands
     yield lambda: damper_strands(building)

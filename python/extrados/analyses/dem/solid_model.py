@@ -10,7 +10,7 @@ from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.impact_rules import ContactValues
 from extrados.analyses.dem.tables import Dem, DemDomain, SpatialDem
 from extrados.analyses.dem.ties import NO_TIES, ElementTies, element_ties
-from extrados.core import dem3
+from extrados.core import dem3, dem_run
 from extrados.core.dem_run import Law, SupportMove
 from extrados.model.errors import Key, NoView
 from extrados.model.geometry.anchors import moved_joints
@@ -100,6 +100,16 @@ class SolidModel:
             self._dowels(),
             self.ties.core,
         )
+
+    def drawn(self) -> dem_run.DrawnContacts:
+        """All contacts, for their forces and places."""
+        return dem_run.DrawnContacts(self.sides, self.assembly.polygon, self.assembly.normal)
+
+    @property
+    def sides(self) -> np.ndarray:
+        """Bodies on both sides of each contact (contact, 2), supports for the ground."""
+        bodies = np.column_stack([self.assembly.a, self.assembly.b])
+        return np.where(bodies == GROUND, self.count + self.supports.of_joint[:, None], bodies)
 
     def _dowels(self) -> dem3.Dowels | None:
         """The keys, each as stiff as the shear springs of all contacts of the two stones that it holds together."""

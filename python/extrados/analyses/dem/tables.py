@@ -223,8 +223,7 @@ class Dem(SpatialDem, Animated):
     )
     thrust: bool = key(
         False,
-        "for springs: also calculate the place of the force in each joint and the stress at its ends or corners; drawings and the film show "
-        "these forces",
+        "also calculate the place of the force in each joint and the stress at its ends or corners; drawings and the film show these forces",
     )
     water: Water | None = key(
         None,
@@ -246,10 +245,6 @@ class Dem(SpatialDem, Animated):
 
     @model_validator(mode="after")
     def _places_of_forces(self) -> "Dem":
-        if self.thrust and self.rigid:
-            raise ValueError(
-                'rigid contacts do not determine the place of a force in a joint: give solver = "compliant", or remove `thrust`'
-            )
         if self.thrust and self.crushing:
             raise ValueError("the key `thrust` assumes elastic springs, which do not crush: remove `thrust` or `crushing`")
         return self
