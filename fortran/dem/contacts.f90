@@ -28,6 +28,7 @@ module dem_contacts
       real(wp) :: damping_loss = 0.0_wp   !! [J]
       real(wp) :: slip(2) = 0.0_wp      !! on rigid contacts: sliding velocities of the last step and of the one before [m/s]
       real(wp) :: late = 0.0_wp         !! shear impulse that acts in the next step, see dem_rigid [N s]
+      real(wp) :: crushed = 0.0_wp      !! by how much the corner has crushed [m]
       real(wp) :: filled = 0.0_wp       !! 0, or the negative gap at which the spring has no force [m]
       integer :: meets = unknown        !! what met here in the step before
       logical :: closed = .false.
@@ -87,8 +88,8 @@ module dem_contacts
       real(wp) :: x(2), y(2)            !! contact points [m]
       real(wp) :: gap(2)                !! distances, negative where they overlap [m]
       real(wp) :: width                 !! of the common stretch [m]
+      real(wp) :: elastic(2) = 1.0_wp   !! share of the springs where corners crush, see spring_share
       integer :: meets(2)               !! at each point
-      logical :: propped(2) = .false.   !! without dashpot: open but pressed, or crushed altogether
    end type overlap
 
 contains

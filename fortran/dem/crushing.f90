@@ -11,7 +11,7 @@
 module dem_crushing
    use common_kinds, only : wp
    use dem_contacts, only : contact_pair, overlap
-   use dem_joint, only : joint_law
+   use dem_joint, only : joint_law, spring_share
    implicit none
    private
    public :: crush_corners, press_within
@@ -23,9 +23,7 @@ contains
       type(joint_law), intent(in) :: law
       type(contact_pair), intent(inout) :: pair
       type(overlap), intent(inout) :: now
-      real(wp), parameter :: whole = 1.0_wp - 1.0e-9_wp
-      real(wp) :: stiffness(2), trial(2), force(2)
-      logical :: yields
+      real(wp) :: stiffness(2), trial(2), force(2), crushed(2)
       integer :: i
       pair%crushed = 0.0_wp
       if (pair%joint == 0 .or. pair%careful .or. .not. now%width > 0.0_wp) return
@@ -33,12 +31,14 @@ contains
          stiffness(i) = law%normal_stiffness * merge(pair%point(i)%length, 0.5_wp * now%width, pair%point(i)%closed)
       end do
       trial = -stiffness * now%gap
+      force = 0.0_wp
+      if (any(trial > 0.0_wp)) call press_within(trial, law%strength * now%width, force)
+      crushed = max((trial - force) / stiffness, 0.0_wp)
+      now%elastic = spring_share((force - pair%point%spring_n) / stiffness, crushed - pair%point%crushed, now%gap >= 0.0_wp)
+      pair%point%crushed = crushed
       if (.not. any(trial > 0.0_wp)) return
-      call press_within(trial, law%strength * now%width, force)
-      yields = sum(force) >= whole * law%strength * now%width
       do i = 1, 2
          if (.not. abs(force(i) - trial(i)) > 0.0_wp) cycle
-         now%propped(i) = yields .or. now%gap(i) >= 0.0_wp
          now%gap(i) = -force(i) / stiffness(i)
          pair%crushed = pair%crushed + force(i) * (trial(i) - force(i)) / stiffness(i)
       end do

@@ -5,7 +5,7 @@ module dem_joint
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: joint_law, brace_joints, free_mortar
+   public :: joint_law, brace_joints, free_mortar, spring_share
 
    !> A type of joint; in the plane stiffnesses and strengths are those of the area times the depth
    type :: joint_law
@@ -15,7 +15,7 @@ module dem_joint
       real(wp) :: cohesion = 0.0_wp             !! of a bonded joint: plane [N per m of joint], space [Pa]
       real(wp) :: tension = 0.0_wp              !! strength of a bonded joint, the same
       real(wp) :: damping = 0.0_wp              !! stiffness-proportional, beta [s]
-      real(wp) :: strength = 0.0_wp             !! in compression, plane alone [N per m of joint]; 0: corners do not crush
+      real(wp) :: strength = 0.0_wp             !! in compression: plane [N per m of joint], space [Pa]; 0: corners do not crush
    end type joint_law
 
 contains
@@ -49,5 +49,17 @@ contains
       law%cohesion = own%cohesion
       law%tension = own%tension
    end subroutine free_mortar
+
+   !> Share of the spring in the approach at a point since the last step, where a face that crushes is in series with it. Dashpots
+   !> follow the springs: a face that crushes at a constant force is not damped
+   elemental function spring_share(by_spring, by_face, open) result(share)
+      real(wp), intent(in) :: by_spring             !! [m]
+      real(wp), intent(in) :: by_face               !! [m]
+      logical, intent(in) :: open                   !! at the point itself
+      real(wp) :: share
+      share = merge(0.0_wp, 1.0_wp, open)
+      if (by_spring * by_face > 0.0_wp) share = share * by_spring / (by_spring + by_face)
+      if (by_spring * by_face < 0.0_wp .and. abs(by_face) > abs(by_spring)) share = 0.0_wp
+   end function spring_share
 
 end module dem_joint

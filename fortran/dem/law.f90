@@ -70,7 +70,7 @@ contains
          pair%given_up = 0.0_wp
       end if
       do i = 1, 2
-         own%damping = merge(0.0_wp, law%damping, now%propped(i))
+         own%damping = now%elastic(i) * law%damping
          associate (point => pair%point(i))
             if (now%gap(i) >= 0.0_wp .or. now%width <= 0.0_wp) then
                ! Mortar that is torn farther than its strength is gone for good.

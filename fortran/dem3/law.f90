@@ -15,9 +15,10 @@
 module dem3_law
    use common_kinds, only : wp
    use common_status, only : status_ok
-   use dem_joint, only : joint_law
+   use dem_joint, only : joint_law, spring_share
    use dem3_bodies, only : body, body_set
    use dem3_patch, only : feature, measure_feature, find_features, patch
+   use dem3_pressure, only : press_face
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -31,6 +32,7 @@ module dem3_law
       logical :: bonded = .false.                          !! cohesion and tension not lost yet
       !> Gap that mortar fills, whether it is whole or broken; below 0 the overlap at which a contact came to be [m]
       real(wp) :: filled = 0.0_wp
+      real(wp) :: overlap = 0.0_wp                         !! of a face that crushes, see dem3_pressure [m]
       real(wp) :: spring_n = 0.0_wp, dash_n = 0.0_wp       !! compression positive [N]
       real(wp) :: spring_s(3) = 0.0_wp, dash_s(3) = 0.0_wp !! on the second body [N]
       real(wp) :: force(3) = 0.0_wp                        !! all of it, in the step before [N]
@@ -53,6 +55,7 @@ module dem3_law
       real(wp) :: friction_loss = 0.0_wp       !! [J]
       real(wp) :: damping_loss = 0.0_wp        !! [J]
       real(wp) :: support_work = 0.0_wp        !! [J]
+      real(wp) :: crushed = 0.0_wp             !! energy of a face that crushes, without its springs, see dem3_pressure [J]
       logical :: lacks_memory = .false.        !! there was no room for its points: the run must end
       type(contact_point), allocatable :: point(:)
    end type contact_pair
@@ -99,7 +102,8 @@ contains
       if (pair%points > 0) bound = any(pair%point(:pair%points)%bonded)
       held = 0.0_wp
       if (pair%points > 0 .and. .not. bound) held = energy_here(law, set, pair)
-      call find_anew(set, margin, pair)
+      call find_anew(set, margin, law%strength > 0.0_wp, pair)
+      if (law%strength > 0.0_wp .and. held > 0.0_wp) return   ! the energy of a face that crushes is not that of its corners
       if (held > 0.0_wp) then
          call keep_energy(law, set, held, pair)
       else if (later .and. .not. bound) then
@@ -152,9 +156,10 @@ contains
 
    !> Where a pair touches now. Apart from find_points, which is called far more often than it must search:
    !> a patch is long.
-   pure subroutine find_anew(set, margin, pair)
+   pure subroutine find_anew(set, margin, whole, pair)
       type(body_set), intent(in) :: set
       real(wp), intent(in) :: margin            !! [m]
+      logical, intent(in) :: whole              !! see find_features
       type(contact_pair), intent(inout) :: pair
       type(contact_point), allocatable :: before(:)
       type(patch) :: found
@@ -163,7 +168,7 @@ contains
       integer :: i, old, failed
       logical, allocatable :: taken(:)
 
-      call find_features(set, pair%part(1), pair%part(2), margin, pair%reference, found, status)
+      call find_features(set, pair%part(1), pair%part(2), margin, whole, pair%reference, found, status)
       pair%lacks_memory = pair%lacks_memory .or. status /= status_ok
       if (status /= status_ok) return
       if (found%reference > 0) pair%reference = found%reference
@@ -231,6 +236,7 @@ contains
       type(contact_pair), intent(inout) :: pair
       pair%friction_loss = pair%friction_loss + elastic_energy(law, pair)
       pair%points = 0
+      pair%crushed = 0.0_wp
    end subroutine drop_points
 
    !> The closed point of before that a new one is; 0 where there is none
@@ -277,14 +283,25 @@ contains
       type(body), intent(inout) :: a
       type(body), intent(inout) :: b
       type(contact_pair), intent(inout) :: pair
-      real(wp) :: normal(3), gap, at(3), arm_a(3), arm_b(3), u(3), force(3), dash(3)
+      real(wp) :: normal(3), gap, at(3), arm_a(3), arm_b(3), u(3), force(3), dash(3), crushed(pair%points)
+      type(joint_law) :: own
+      real(wp) :: elastic(pair%points)
+      logical :: crushes
       integer :: i
 
+      own = law
+      crushes = law%strength > 0.0_wp .and. pair%points > 2
+      pair%crushed = 0.0_wp
+      if (crushes) call crush_face(law, a, b, pair, crushed, elastic)
       do i = 1, pair%points
          associate (point => pair%point(i))
             call measure_feature(point%what, a, b, normal, gap, at)
             if (gap >= 0.0_wp) point%filled = max(point%filled, 0.0_wp)
             gap = gap - point%filled
+            if (crushes) then
+               gap = crushed(i)
+               own%damping = elastic(i) * law%damping
+            end if
             if (gap >= 0.0_wp) then
                ! Mortar that is torn farther than its strength is gone for good.
                point%bonded = point%bonded .and. law%normal_stiffness * gap <= law%tension
@@ -296,7 +313,7 @@ contains
             u = b%v - a%v + cross(b%spin, arm_b) - cross(a%spin, arm_a)
             if (gap < 0.0_wp .or. point%bonded) then
                point%closed = .true.
-               call press_point(law, kick, drift, normal, gap, u, arm_a, arm_b, a, b, point, pair%friction_loss, &
+               call press_point(own, kick, drift, normal, gap, u, arm_a, arm_b, a, b, point, pair%friction_loss, &
                   force, dash)
                if (.not. a%fixed) a%touched = .true.
                if (.not. b%fixed) b%touched = .true.
@@ -324,6 +341,33 @@ contains
          end associate
       end do
    end subroutine apply_pair_law
+
+   !> Gaps at which the springs of the corners have the forces of a face that crushes, in place of those measured
+   pure subroutine crush_face(law, a, b, pair, gap, elastic)
+      type(joint_law), intent(in) :: law
+      type(body), intent(in) :: a
+      type(body), intent(in) :: b
+      type(contact_pair), intent(inout) :: pair
+      real(wp), intent(out) :: gap(:)           !! (points) [m]
+      real(wp), intent(out) :: elastic(:)       !! (points) see spring_share
+      real(wp), dimension(pair%points) :: spring, overlap, force
+      real(wp) :: corner(3, pair%points), normal(3), at(3)
+      integer :: i
+      do i = 1, pair%points
+         call measure_feature(pair%point(i)%what, a, b, normal, gap(i), at)
+         gap(i) = gap(i) - merge(max(pair%point(i)%filled, 0.0_wp), pair%point(i)%filled, gap(i) >= 0.0_wp)
+         corner(:, i) = pair%point(i)%what%at
+         spring(i) = law%normal_stiffness * pair%point(i)%what%area
+         overlap(i) = pair%point(i)%overlap
+      end do
+      call press_face(corner, spring, -spring * gap, law%normal_stiffness, law%strength, overlap, force, pair%crushed)
+      do i = 1, pair%points
+         elastic(i) = spring_share((force(i) - pair%point(i)%spring_n) / spring(i), &
+            max(overlap(i), 0.0_wp) - max(pair%point(i)%overlap, 0.0_wp), gap(i) >= 0.0_wp)
+         pair%point(i)%overlap = overlap(i)
+         gap(i) = merge(-force(i) / spring(i), max(gap(i), 0.0_wp), force(i) > 0.0_wp)
+      end do
+   end subroutine crush_face
 
    !> Force of a closed point: springs, the normal dashpot, then friction on the shear spring and its dashpot
    pure subroutine press_point(law, kick, drift, normal, gap, u, arm_a, arm_b, a, b, point, friction_loss, force, dash)
@@ -494,7 +538,7 @@ contains
       type(contact_pair), intent(in) :: pair
       real(wp) :: energy
       integer :: k
-      energy = 0.0_wp
+      energy = pair%crushed
       do k = 1, pair%points
          if (pair%point(k)%closed) energy = energy + energy_of(law, pair%point(k))
       end do

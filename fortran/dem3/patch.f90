@@ -57,11 +57,12 @@ module dem3_patch
 contains
 
    !> Features of parts one and two that are nearer than a margin
-   pure subroutine find_features(set, one, two, margin, before, found, status)
+   pure subroutine find_features(set, one, two, margin, whole, before, found, status)
       type(body_set), intent(in) :: set
       integer, intent(in) :: one
       integer, intent(in) :: two
       real(wp), intent(in) :: margin             !! [m]
+      logical, intent(in) :: whole               !! of faces that touch also the corners that are farther apart
       integer, intent(in) :: before              !! reference of before, 0 none
       type(patch), intent(out) :: found
       integer(c_int), intent(out) :: status      !! status_out_of_memory, else ok
@@ -101,11 +102,11 @@ contains
          if (found%reference == 1) then
             call clip_shared_face(set, one, face_one, here_one, a, two, facing, facing_cosine, here_two, b, &
                on_first, size, &
-               margin, found)
+               merge(huge(1.0_wp), margin, whole), found)
          else
             call clip_shared_face(set, two, face_two, here_two, b, one, facing, facing_cosine, here_one, a, &
                on_second, size, &
-               margin, found)
+               merge(huge(1.0_wp), margin, whole), found)
          end if
       end associate
    end subroutine find_features
@@ -229,7 +230,7 @@ contains
       type(body), intent(in) :: b
       integer, intent(in) :: kind                !! of a point of the other over the reference
       real(wp), intent(in) :: size               !! of the lesser part [m]
-      real(wp), intent(in) :: margin             !! [m]
+      real(wp), intent(in) :: margin             !! of corners that count [m]
       type(patch), intent(inout) :: found
       real(wp) :: normal(3), against(3), inward(3), start(3), along(3), kept(3, most_points), next(3, most_points)
       real(wp) :: side(most_points), area(most_points), level, gap, limit

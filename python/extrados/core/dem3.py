@@ -92,8 +92,8 @@ class Model(BodyModel[Run]):
     def __init__(self, solids: Solids, options: Options, *, rate: np.ndarray | None = None, moves: Sequence[SupportMove] = ()):
         if not solids.laws or any(not 0 <= k < len(solids.laws) for k in solids.joints.values()):
             raise ValueError("a joint refers to the number of a joint law that does not exist")
-        if any(law.strength > 0.0 for law in solids.laws):
-            raise ValueError("corners can crush only in plane models")
+        if options.rigid and any(law.strength > 0.0 for law in solids.laws):
+            raise ValueError("corners crush on springs alone")
         if (most := max((len(face) for faces in solids.faces for face in faces), default=0)) > MOST_CORNERS:
             raise ValueError(f"a face has {most} corners, expected at most {MOST_CORNERS}")
         n, parts = len(solids.mass), len(solids.vertices)

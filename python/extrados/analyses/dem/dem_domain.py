@@ -147,7 +147,7 @@ def run(context: Context, options: DemDomain) -> Result:
     else:
         model, varied = make_solid_model(context.building, options), []
         springs = not options.rigid or options.cross_check
-        context.warnings += (dem_model.doubts_of_springs if springs else dem_model.doubts_of_rigid_mortar)(model.values)
+        context.warnings += dem_model.warnings_of_solids(model, springs=springs)
     return compared(context, options.rigid, model, lambda: _found(context, options, model, varied))
 
 

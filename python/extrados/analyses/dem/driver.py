@@ -21,7 +21,6 @@ def run(context: Context, options: Dem) -> Result:
         of_section = tilt if tilted else history
         return compared(context, options.rigid, model, lambda: of_section.run(context, options, model))
     solids = make_solid_model(context.building, options)
-    doubts = dem_model.doubts_of_rigid_mortar if options.rigid else dem_model.doubts_of_springs
-    context.warnings += doubts(solids.values)
+    context.warnings += dem_model.warnings_of_solids(solids, springs=not options.rigid)
     of_solids = solid_tilt if tilted else solid_history
     return compared(context, options.rigid, solids, lambda: of_solids.run(context, options, solids))

@@ -104,7 +104,7 @@ class Ensemble:
         try:
             if isinstance(model, Model):
                 return proof_of_section(building, model.strength or None) is not None
-            return proof_of_solids(building) is not None
+            return proof_of_solids(building, model.strength or None) is not None
         except NoAnswer:
             return False
 
@@ -195,7 +195,7 @@ def run(context: Context, options: DemFragility) -> Result:
     if isinstance(model, Model):
         context.warnings += dem_model.warnings(model, options)
     else:
-        context.warnings += (dem_model.doubts_of_rigid_mortar if options.rigid else dem_model.doubts_of_springs)(model.values)
+        context.warnings += dem_model.warnings_of_solids(model, springs=not options.rigid)
     return compared(context, options.rigid, model, lambda: _found(context, options, model))
 
 

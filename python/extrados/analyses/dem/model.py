@@ -20,6 +20,9 @@ from extrados.model.geometry.water import Pressure
 from extrados.schema.constants import GRAVITY
 from extrados.views.rigid import RigidBodies
 
+#: Of contacts that crush
+RECOVERY = "crushed corners recover when the joint closes: the damage by crushing and its energy loss are neglected"
+
 Found = TypeVar("Found", bound=dem_run.FoundRun)
 
 
@@ -154,8 +157,7 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
     found += doubts_of_springs(values or model.values)
     if model.strength:
         found.append(
-            "crushed corners recover when the joint closes: the damage by crushing and its energy loss are neglected. Contacts that form "
-            "later, and joints whose overlap is below 4 % of the size of the smallest block, do not crush"
+            f"{RECOVERY}. Contacts that form later, and joints whose overlap is below 4 % of the size of the smallest block, do not crush"
         )
     if options.mass_damping > 0.0:
         found.append(
@@ -163,6 +165,12 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
             "meaning and is unsafe: give mass_damping = 0"
         )
     return found
+
+
+def warnings_of_solids(model: SolidModel, *, springs: bool) -> list[str]:
+    """What is doubtful about the joints of blocks in space."""
+    found = doubts_of_springs(model.values) if springs else doubts_of_rigid_mortar(model.values)
+    return [*found, f"{RECOVERY}. Contacts that form later, and edges that cross, do not crush"] if model.strength else found
 
 
 def adjusted(model: Model) -> list[str]:

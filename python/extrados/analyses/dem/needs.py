@@ -49,7 +49,7 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
         yield lambda: _refuse_springs(building)
         yield lambda: _refuse_sliding_mortar(building)
     if isinstance(options, tables.SpatialDem) and options.crushing:
-        yield lambda: _refuse_crushing(building, _rigid(options))
+        yield lambda: _refuse_crushing(building, None, _rigid(options))
     if isinstance(options, tables.Dem) and options.thrust:
         yield lambda: _refuse_worn_thrust(building)
     if isinstance(options, tables.Dem) and (water := options.water) is not None:
@@ -122,7 +122,7 @@ def _refuse_sliding_mortar(building: Building, solids: SolidAssembly | None = No
         )
 
 
-def _refuse_crushing(building: Building, rigid: bool) -> None:
+def _refuse_crushing(building: Building, solids: SolidAssembly | None, rigid: bool) -> None:
     """Refused where corners are to crush without a strength, on rigid contacts, or at joints with mortar."""
     key = ("analysis", "crushing")
     if building.material.compressive_strength is None:
@@ -130,7 +130,7 @@ def _refuse_crushing(building: Building, rigid: bool) -> None:
     if rigid:
         raise Refused("crushing of corners requires springs, but `cross_check` also uses rigid contacts: remove `cross_check`", key)
     for name in ("cohesion", "tension"):
-        if np.nanmax(building.joint_property(name), initial=0.0) > 0.0:
+        if np.nanmax(building.joint_property(name, solids), initial=0.0) > 0.0:
             raise Refused(
                 "`crushing` is only for joints without mortar: remove `cohesion` and `tension`, or remove `crushing`", ("joints", name)
             )
@@ -179,6 +179,8 @@ def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: Solid
     for text, key in refusals(building, options):
         yield partial(refuse, text, key)
     yield lambda: refuse_stones(stones)
+    if options.crushing:
+        yield lambda: _refuse_crushing(building, stones, _rigid(options))
     if _rigid(options):
         yield lambda: _refuse_sliding_mortar(building, stones)
     yield lambda: refuse_rigid_ties(building)

@@ -1,6 +1,6 @@
 """A deck's blocks in space as a model of discrete elements: bodies, supports, joint types, damping, settlement."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -25,12 +25,14 @@ FACING = -0.3  # cosine between faces of a stone that look away from each other
 
 @dataclass(frozen=True)
 class SolidModel:
-    """Blocks in space with what they stand on. Bodies 0..count-1 are the blocks, the rest supports."""
+    """Blocks in space with what they stand on. Bodies 0..count-1 are the blocks, the rest supports. strength: at which contacts crush, 0
+    never [Pa]."""
 
     assembly: SolidAssembly
     supports: Supports
     values: ContactValues
     ties: ElementTies = NO_TIES
+    strength: float = 0.0
 
     @property
     def count(self) -> int:
@@ -69,7 +71,7 @@ class SolidModel:
         return found
 
     def bodies(self) -> dem3.Solids:
-        """Bodies and laws for the core; contacts that form later take the median of the joints, without mortar."""
+        """Bodies and laws for the core; contacts that form later take the median of the joints, without mortar and crushing."""
         one, v = self.assembly, self.values
         below = self.supports.bodies
         parts = [*one.parts, *below]
@@ -79,7 +81,7 @@ class SolidModel:
         joints: dict[tuple[int, int], int] = {}
         of_pair = [self.shared(x) for x in (v.stiffness, v.shear_stiffness, v.friction, v.cohesion, v.tension)]
         for pair, shared in self.pairs.items():
-            law = _law(v, *(float(x[shared[0]]) for x in of_pair))
+            law = replace(_law(v, *(float(x[shared[0]]) for x in of_pair)), strength=self.strength)
             if law not in numbers:
                 numbers[law] = len(laws)
                 laws.append(law)
@@ -134,7 +136,8 @@ def make_solid_model(building: Building, options: SpatialDem) -> SolidModel:
     """The model of a building's blocks in space."""
     assembly = building.solids()
     ties = element_ties(building, (*building.strands(), *damper_strands(building)), np.arange(len(assembly.mass)), options.has_rates)
-    return SolidModel(assembly, supports_of(assembly, options.floor), solid_values(building, assembly), ties)
+    strength = building.material.compressive_strength if options.crushing else None
+    return SolidModel(assembly, supports_of(assembly, options.floor), solid_values(building, assembly), ties, strength or 0.0)
 
 
 def moves_of(building: Building, model: SolidModel) -> tuple[SupportMove, ...]:
@@ -167,7 +170,6 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         ),
         ("[initial] rotation_ratio", bool(building.initial.rotation_ratio), ("initial", "rotation_ratio")),
         ("stiffness of supports", building.supports.stiffness is not None, ("supports", "stiffness")),
-        ("crushing of corners", options.crushing, ("analysis", "crushing")),
         ("worn corners", joints.worn_corners > 0.0, ("joints", "worn_corners")),
     ]
     if isinstance(options, Dem):

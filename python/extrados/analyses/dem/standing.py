@@ -16,6 +16,7 @@ from extrados.analyses.limit.common import loads_of
 from extrados.core import dem, dem3, dem_run
 from extrados.core.calls import interruptible
 from extrados.limit.answer import cannot_stand
+from extrados.limit.crushing import CrushingLimit
 from extrados.limit.equilibrium import Disconnected
 from extrados.limit.errors import CannotStand, NoAnswer
 from extrados.limit.programme import LimitAnalysis
@@ -48,7 +49,7 @@ def compared(context: Context, rigid: bool, model: Model | SolidModel, find: Cal
     """What elements find, with what other methods find under the own weight. Where the elements collapse: CannotStand where
     limit analysis of the same blocks proves it, else Refused."""
     alone, doubt, warning = left_out(model), "", ""
-    proof_of: Callable[[Building], CannotStand | None] = proof_of_solids
+    proof_of: Callable[[Building], CannotStand | None] = partial(proof_of_solids, strength=model.strength or None)
     if isinstance(model, Model):
         proof_of = partial(proof_of_section, strength=model.strength or None, water=model.water)
     try:
@@ -69,11 +70,13 @@ def compared(context: Context, rigid: bool, model: Model | SolidModel, find: Cal
         raise Refused(f"{error}{wedged}", WHOLE) from None
     if doubt and result.status == "ok":
         result.answer += f" {doubt}"
-    result.warnings += [text for text in (warning, alone or _contradiction(context.building, proof_of)) if text]
+    result.warnings += [
+        text for text in (warning, alone or _contradiction(context.building, proof_of, isinstance(model, SolidModel))) if text
+    ]
     return result
 
 
-def _contradiction(building: Building, proof_of: Callable[[Building], CannotStand | None]) -> str:
+def _contradiction(building: Building, proof_of: Callable[[Building], CannotStand | None], solid: bool) -> str:
     """That limit analysis proves collapse where elements stand; empty where it does not."""
     try:
         proof = proof_of(building)
@@ -82,7 +85,7 @@ def _contradiction(building: Building, proof_of: Callable[[Building], CannotStan
     if proof is None:
         return ""
     return (
-        f"with discrete elements the structure stands {_held(building, proof_of)}, but limit analysis finds collapse under "
+        f"with discrete elements the structure stands {_held(building, solid)}, but limit analysis finds collapse under "
         f"self-weight: {proof}"
     )
 
@@ -136,10 +139,12 @@ def proof_of_section(building: Building, strength: float | None = None, water: P
         raise NoAnswer(str(error)) from None
 
 
-def proof_of_solids(building: Building) -> CannotStand | None:
+def proof_of_solids(building: Building, strength: float | None = None) -> CannotStand | None:
     """The same of blocks in space; None where no motion proves collapse."""
     assembly = building.solids()
-    found = SolidLimit(assembly, building.friction(assembly)).falls()
+    friction = building.friction(assembly)
+    dry = strength is None
+    found = (SolidLimit(assembly, friction) if dry else CrushingLimit(assembly, friction, np.full(len(assembly.a), strength))).falls()
     if found is None:
         return None
     name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
@@ -149,9 +154,9 @@ def proof_of_solids(building: Building) -> CannotStand | None:
     )
 
 
-def _held(building: Building, proof_of: Callable[[Building], CannotStand | None]) -> str:
+def _held(building: Building, solid: bool) -> str:
     """By what a building stands that limit analysis finds to collapse."""
-    assembly = building.solids() if proof_of is proof_of_solids else None
+    assembly = building.solids() if solid else None
     for name in ("cohesion", "tension"):
         if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
             return "because of the cohesion and tension of the joints, which limit analysis neglects"

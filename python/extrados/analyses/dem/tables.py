@@ -154,7 +154,7 @@ class SpatialDem(DemTable):
     crushing: bool = key(
         False,
         "include crushing of the corners of joints, which moves hinges inward: the pressure is at most the compressive strength of the "
-        "material. For plane sections on springs, without mortar",
+        "material. For springs, without mortar",
     )
 
     @property
