@@ -4,7 +4,7 @@ module dem_plane_run
    use common_lists, only : stop_end => dem_stop_end, stop_collapse => dem_stop_collapse, &
       stop_left => dem_stop_left, stop_overlap => dem_stop_overlap
    use common_status, only : status_ok, status_invalid_argument, status_not_finite, status_out_of_memory
-   use dem_bodies, only : body, body_set
+   use dem_bodies, only : body, body_set, load_potential
    use dem_contacts, only : contact_pair, contact_set, overlap, measure_overlap, pair_loss
    use dem_energy, only : energy_terms
    use dem_jointed, only : jointed_model
@@ -132,7 +132,8 @@ contains
                now%kinetic = now%kinetic + 0.125_wp * (b%mass * ((b%vx + vx - 2.0_wp * model%base(1))**2 &
                   + (b%vy + vy - 2.0_wp * model%base(2))**2) + b%inertia * (b%spin + spin)**2)
                now%potential = now%potential - b%mass * (model%gravity(1) * (b%x - model%drift * b%vx - b%rest_x) &
-                  + model%gravity(2) * (b%y - model%drift * b%vy - b%rest_y))
+                  + model%gravity(2) * (b%y - model%drift * b%vy - b%rest_y)) &
+                  + load_potential(b, b%x - model%drift * b%vx, b%y - model%drift * b%vy, b%angle - model%drift * b%spin)
                now%mass_damping = now%mass_damping + b%mass_loss
                now%work = now%work + b%work
             end associate

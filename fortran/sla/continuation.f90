@@ -14,9 +14,9 @@ module sla_continuation
    use common_status, only : status_cancelled, status_ok, status_out_of_memory
    use sla_bar, only : bar_group
    use sla_coaxial, only : by_secant
-   use sla_group, only : friction_group, history_group, point_group, unbounded
-   use sla_iterations, only : evaluate, explicit_step, few, find_places, growth, implicit_step, is_driven, longest_step, &
-      loads_run_away
+   use sla_group, only : history_group, point_group, unbounded
+   use sla_iterations, only : evaluate, explicit_step, few, find_places, growth, has_friction, implicit_step, is_driven, &
+      loads_run_away, longest_step
    use sla_ledger, only : event_log, judge_fall
    use sla_model, only : element_model
    use sla_regions, only : regions_settled
@@ -116,20 +116,6 @@ contains
          end select
       end do
    end subroutine begin_histories
-
-   !> Are there joints that can slide?
-   pure function has_friction(model) result(yes)
-      type(element_model), intent(in) :: model
-      logical :: yes
-      integer :: g
-      yes = .false.
-      do g = 1, size(model%mesh%holders)
-         select type (group => model%mesh%holders(g)%group)
-         class is (friction_group)
-            yes = yes .or. group%slides
-         end select
-      end do
-   end function has_friction
 
    !> Go on from the displacements and histories that a path of other loads and supports ended with; without histories
    !> from those of the teeth lost so far

@@ -7,6 +7,10 @@
 !>               residual; where no step does, three iterations with the secant matrix
 !>   staggered   where Newton stalls: damage frozen, Newton on the convex energy with Armijo's rule; histories follow;
 !>               again until the new damage leaves no force out of balance. Damage only grows and is bounded
+!>   descent     instead of the staggered step where no joint slides, so that the forces have a potential: secant matrix,
+!>               corrected by pairs of changes (sla_secant_pairs), and a line search on the work of the forces out of
+!>               balance (Crisfield 1991, 9.2); histories follow after each way. Without pairs and search this is the
+!>               staggered step with one solution a loop
 !>   arc length  where displacements snap back, where asked for: Newton with a prescribed dissipation in the step (Gutierrez 2004;
 !>               Verhoosel, Remmers and Gutierrez 2009). Displacements and multiplier change by du and dl from u0 and l0;
 !>               damaged points unload to the origin, so that twice the dissipated energy is (fa + l0 fb).du - dl fb.u0
@@ -24,10 +28,11 @@ module sla_iterations
    use sla_coaxial, only : by_frozen, by_secant, by_tangent
    use sla_group, only : element_group, friction_group, history_group, most_entries, unbounded
    use sla_model, only : element_model
+   use sla_secant_pairs, only : pair_memory
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: find_places, implicit_step, explicit_step, evaluate, is_driven, longest_step, loads_run_away, few, growth
+   public :: find_places, implicit_step, explicit_step, evaluate, has_friction, is_driven, longest_step, loads_run_away, few, growth
 
    !> Residual over the largest nodal force: of Newton's method, of staggered steps, which approach it slowly, of the
    !> convex problems
@@ -37,6 +42,12 @@ module sla_iterations
    !> Loops before that: damage ahead of a snap that soon ends lowers the load by some per cent
    integer, parameter :: many_loops = 16
    integer, parameter :: most_newton = 12, most_loops = 300, most_inner = 40, most_halvings = 4
+   !> Iterations in which Newton's method must halve the residual
+   integer, parameter :: most_vain = 4
+   !> Work of the forces out of balance at the end of a way over that at its start, at most; trials to find such an end, the
+   !> factors by which one is longer and shorter than the last, and the longest way
+   real(wp), parameter :: most_work = 0.7_wp, longer(2) = [1.5_wp, 4.0_wp], shorter = 0.1_wp, longest_way = 16.0_wp
+   integer, parameter :: most_searches = 6
    !> Loop of a staggered step after which Newton's method tries first, and then each time twice as many later
    integer, parameter :: first_try = 4
    !> Vectors of the solution with sliding friction, and the part of the right side that may be left
@@ -75,6 +86,20 @@ contains
       yes = any(abs(model%support%moved(:, 2)) > 0.0_wp)
    end function is_driven
 
+   !> Are there joints that can slide?
+   pure function has_friction(model) result(yes)
+      type(element_model), intent(in) :: model
+      logical :: yes
+      integer :: g
+      yes = .false.
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (friction_group)
+            yes = yes .or. group%slides
+         end select
+      end do
+   end function has_friction
+
    !> Newton's method, then the staggered one
    subroutine implicit_step(model, length, code, iterations, carried, lost, status)
       type(element_model), intent(inout) :: model
@@ -103,7 +128,11 @@ contains
       if (status == status_ok .and. .not. found) then
          code = code_staggered
          call predict(model, length, status)
-         if (status == status_ok) call staggered_step(model, length, iterations, found, carried, lost, status)
+         if (status == status_ok .and. has_friction(model)) then
+            call staggered_step(model, length, iterations, found, carried, lost, status)
+         else if (status == status_ok) then
+            call descent_step(model, length, iterations, found, carried, lost, status)
+         end if
          if (.not. found) code = code_unbalanced
       end if
       if (status == status_ok .and. carried) call update_all(model, lost)
@@ -492,17 +521,19 @@ contains
       end associate
    end subroutine move
 
-   !> Newton's method by the tangent, with a line search on the residual
+   !> Newton's method by the tangent, with a line search on the residual; given up where the residual hardly decreases
    subroutine newton_step(model, length, iterations, found, status)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: length
       integer, intent(out) :: iterations
       logical, intent(out) :: found
       integer(c_int), intent(out) :: status
-      real(wp) :: energy, scale, ratio, trial, part
-      integer :: secants, i
+      real(wp) :: energy, scale, ratio, trial, part, least
+      integer :: secants, i, vain
       logical :: evaluated
       status = status_ok
+      least = unbounded
+      vain = 0
       secants = 0
       found = .false.
       evaluated = .false.
@@ -514,7 +545,9 @@ contains
          found = ratio < tolerance .and. iterations > 0
          if (model%path%on_arc) found = found .and. &
             abs(dissipation(model) - model%path%energy_step) <= arc_tolerance * model%path%energy_step
-         if (found .or. .not. ratio <= unbounded) return
+         vain = merge(0, vain + 1, ratio <= 0.5_wp * least)
+         if (vain == 0) least = ratio
+         if (found .or. .not. ratio <= unbounded .or. vain > most_vain) return
          call correct(model, model%path%drive + length, status)
          if (status == status_not_positive_definite) then
             status = status_ok
@@ -542,6 +575,116 @@ contains
       end do
    end subroutine newton_step
 
+   !> Ways of decreasing potential until no force is out of balance; damage follows after each; now and then Newton's method
+   !> tries to end it from the damage so far
+   subroutine descent_step(model, length, iterations, found, carried, lost, status)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: length
+      integer, intent(out) :: iterations
+      logical, intent(out) :: found
+      logical, intent(out) :: carried
+      real(wp), intent(inout) :: lost          !! [J]
+      integer(c_int), intent(out) :: status
+      type(pair_memory) :: pairs
+      real(wp), allocatable :: before(:)
+      real(wp) :: energy, scale, work, part
+      integer :: n, next_try, info
+      n = model%mesh%equations
+      found = .false.
+      carried = .true.
+      next_try = first_try
+      call pairs%make(n, status)
+      allocate (before(n), stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (status /= status_ok) return
+      associate (path => model%path, z => model%solution%z, force => model%solution%force)
+         call evaluate(model, by_secant, .true., energy, scale)
+         do iterations = 1, most_loops
+            path%residual = residual_of(model, scale)
+            found = path%residual < staggered_tolerance .and. iterations > 1
+            if (found) return
+            if (iterations == next_try) then
+               next_try = 2 * next_try
+               call try_newton(model, length, found, status)
+               if (found .or. status /= status_ok) return
+               call evaluate(model, by_secant, .true., energy, scale)
+            end if
+            before(:) = force(1:n)
+            call pairs%reduce(force(1:n))
+            call correct(model, path%drive + length, status)
+            if (status /= status_ok) return
+            call pairs%complete(z(:, 1), z(1, 2))
+            work = dot_product(before, z(:, 1))
+            if (pairs%count > 0 .and. .not. work < 0.0_wp) then
+               pairs%count = 0
+               force(1:n) = before
+               cycle
+            end if
+            part = 1.0_wp
+            call move(model, part)
+            if (iterations == 1) then        ! to the control's value
+               call evaluate(model, by_secant, .true., energy, scale)
+               cycle
+            end if
+            call search_way(model, work, part, scale)
+            carried = .not. has_run_away(model, length)
+            if (.not. carried) return
+            call update_all(model, lost)
+            call pairs%take(part * z(:, 1), part * z(1, 2), force(1:n) - before, part * work)
+            if (cancel_requested()) status = status_cancelled
+            if (status /= status_ok) return
+         end do
+      end associate
+   end subroutine descent_step
+
+   !> Newton's method from the present displacements, to which it returns where it finds no state
+   subroutine try_newton(model, length, found, status)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: length
+      logical, intent(out) :: found
+      integer(c_int), intent(out) :: status
+      real(wp), allocatable :: tried(:)
+      real(wp) :: lambda
+      integer :: iterations, info
+      found = .false.
+      allocate (tried, source=model%path%u, stat=info)
+      status = merge(status_ok, status_out_of_memory, info == 0)
+      if (info /= 0) return
+      lambda = model%path%lambda
+      call newton_step(model, length, iterations, found, status)
+      found = found .and. .not. has_run_away(model, length)
+      if (found .or. status /= status_ok) return
+      model%path%u(:) = tried
+      model%path%lambda = lambda
+   end subroutine try_newton
+
+   !> The part of the last correction at whose end the forces out of balance do little work along it: a longer way where
+   !> they still drive it, a shorter one where they oppose it; forces and matrix are those of its end
+   subroutine search_way(model, work, part, scale)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: work             !! of the forces at the start of the way [J], negative
+      real(wp), intent(inout) :: part
+      real(wp), intent(out) :: scale           !! largest nodal force of an element [N]
+      real(wp) :: energy, now, next
+      integer :: trial
+      do trial = 1, most_searches
+         call evaluate(model, by_secant, trial == 1, energy, scale)
+         now = dot_product(model%solution%force(1:model%mesh%equations), model%solution%z(:, 1))
+         if (abs(now) <= -most_work * work .or. (now < 0.0_wp .and. part >= longest_way)) exit
+         if (now > 0.0_wp) then
+            next = part * max(shorter, work / (work - now))
+            if (part > 1.0_wp) next = max(1.0_wp, next)
+         else if (now > work) then
+            next = part * min(max(work / (work - now), longer(1)), longer(2))
+         else
+            next = part * longer(2)
+         end if
+         call move(model, next - part)
+         part = next
+      end do
+      if (trial > 1) call evaluate(model, by_secant, .true., energy, scale)
+   end subroutine search_way
+
    !> Damage frozen, then updated, until nothing changes; now and then Newton's method tries to end it from the damage
    !> so far
    subroutine staggered_step(model, length, iterations, found, carried, lost, status)
@@ -552,15 +695,11 @@ contains
       logical, intent(out) :: carried
       real(wp), intent(inout) :: lost
       integer(c_int), intent(out) :: status
-      real(wp), allocatable :: tried(:)
-      real(wp) :: energy, scale, lambda, before, ratio
-      integer :: next_try, inner, info
+      real(wp) :: energy, scale, before, ratio
+      integer :: next_try
       found = .false.
       carried = .true.
       next_try = first_try
-      allocate (tried, mold=model%path%u, stat=info)
-      status = merge(status_ok, status_out_of_memory, info == 0)
-      if (info /= 0) return
       before = 0.0_wp
       do iterations = 1, most_loops
          call frozen_solution(model, length, status)
@@ -575,16 +714,8 @@ contains
          if (found) return
          if (iterations == next_try) then
             next_try = 2 * next_try
-            tried(:) = model%path%u
-            lambda = model%path%lambda
-            call newton_step(model, length, inner, found, status)
-            if (status /= status_ok) return
-            carried = .not. has_run_away(model, length)
-            if (found .and. carried) return
-            model%path%u(:) = tried
-            model%path%lambda = lambda
-            carried = .true.
-            found = .false.
+            call try_newton(model, length, found, status)
+            if (found .or. status /= status_ok) return
          end if
          if (cancel_requested()) status = status_cancelled
          if (status /= status_ok) return

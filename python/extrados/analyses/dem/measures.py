@@ -15,6 +15,7 @@ from extrados.core import dem, dem3, dem_run
 from extrados.core.dem_run import SupportMove
 from extrados.model.geometry.assembly import GROUND
 from extrados.results.dem import APART, CLOSED, HINGED_FIRST, HINGED_SECOND, CollapseCriterion, Convergence, DemOutcome
+from extrados.results.fields import Keys
 from extrados.results.model import Array, TableData
 from extrados.schema.constants import GRAVITY
 from extrados.views.rigid import FOOTING
@@ -345,6 +346,23 @@ def support_arrays(model: Model) -> dict[str, Array]:
     return {
         "support_outline": Array(np.concatenate(parts), ("support_vertex", "axis"), "m", "outlines of the supports"),
         "support_start": Array(np.cumsum([0, *map(len, parts)]), ("support_edge",), "", "first vertex of each"),
+    }
+
+
+def water_force(model: Model) -> Keys:
+    """The force of the water on all blocks [N], as a key of results; nothing without water."""
+    return {} if model.water is None else {"water_force_N": model.water.force.sum(axis=0).tolist()}
+
+
+def water_arrays(model: Model) -> dict[str, Array]:
+    """The water pressure, for pictures; nothing without water."""
+    water = model.water
+    if water is None:
+        return {}
+    return {
+        "water_point": Array(water.point, ("wet_point", "axis"), "m", "points of the faces and joints on which water presses"),
+        "water_pressure": Array(water.force / water.area[:, None], ("wet_point", "axis"), "Pa", "pressure there, to +x and upward"),
+        "water_block": Array(water.block, ("wet_point",), "", "numbers of the blocks on which it acts"),
     }
 
 

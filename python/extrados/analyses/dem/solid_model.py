@@ -174,6 +174,7 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         asked += [
             ('base = "moving"', options.base == "moving", ("analysis", "base")),
             ("find_friction", options.find_friction, ("analysis", "find_friction")),
+            ("water", options.water is not None, ("analysis", "water")),
         ]
     if isinstance(options, DemDomain):
         asked.append(("mode_II", options.mode_II, ("analysis", "mode_II")))
