@@ -1,7 +1,7 @@
 /* Rows of Cholesky's factor within an envelope (fortran/nonsmooth/skyline.f90): row i of the lower triangle stands from column first[i]
  * on, entry (i, j) at a[start[i] + j]; rows, columns and entries are counted from 1.
  *
- * Rows of one body begin at the same column, so that all of them meet each row above at once: that row is read once, and their sums
+ * Rows of one body begin at the same column, so that all of them meet each row above together: that row is read once, and their sums
  * do not wait for each other. Each sum is that of one row alone, in four parts, to the last bit.
  */
 #include "extrados.h"

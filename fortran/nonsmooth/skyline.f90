@@ -186,7 +186,7 @@ contains
       end do
    end subroutine skyline_add
 
-   !> Cholesky factors in place of the matrix; singular where it is not positive definite. The rows of a body meet all rows above at once
+   !> Cholesky factors in place of the matrix; singular where it is not positive definite. The rows of a body meet all rows above together
    pure subroutine skyline_factor(matrix, status)
       type(skyline), intent(inout) :: matrix
       integer(c_int), intent(out) :: status
