@@ -10,7 +10,8 @@
 module nonsmooth_skyline
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory, status_singular
-   use, intrinsic :: iso_c_binding, only : c_int
+   use nonsmooth_c_bindings, only : extrados_envelope_rows
+   use, intrinsic :: iso_c_binding, only : c_int, c_int32_t
    implicit none
    private
    public :: skyline, skyline_new, skyline_add, skyline_factor, skyline_solve
@@ -19,8 +20,8 @@ module nonsmooth_skyline
    type :: skyline
       integer :: n = 0
       integer :: freedoms = 0               !! of a body
-      integer, allocatable :: first(:)
-      integer, allocatable :: start(:)
+      integer(c_int32_t), allocatable :: first(:)
+      integer(c_int32_t), allocatable :: start(:)
       real(wp), allocatable :: a(:)
       integer, allocatable :: rank(:)       !! place of each node in the order
    end type skyline
@@ -185,17 +186,19 @@ contains
       end do
    end subroutine skyline_add
 
-   !> Cholesky factors in place of the matrix; singular where it is not positive definite
+   !> Cholesky factors in place of the matrix; singular where it is not positive definite. The rows of a body meet all rows above together
    pure subroutine skyline_factor(matrix, status)
       type(skyline), intent(inout) :: matrix
       integer(c_int), intent(out) :: status
-      integer :: i, j, from, other
+      integer :: i, j, from, other, body
       real(wp) :: pivot
 
       status = status_singular
       do i = 1, matrix%n
+         body = i - mod(i - 1, matrix%freedoms)
+         if (i == body) call extrados_envelope_rows(matrix%freedoms, i, matrix%first, matrix%start, matrix%a)
          associate (a => matrix%a, row => matrix%start(i), first => matrix%first(i))
-            do j = first, i - 1
+            do j = body, i - 1
                from = max(first, matrix%first(j))
                other = matrix%start(j)
                a(row + j) = (a(row + j) - dot(a(row + from:row + j - 1), a(other + from:other + j - 1))) / a(other + j)

@@ -174,3 +174,10 @@ def test_joints_of_one_pair_and_of_a_stone_of_several_parts(solver: str, directi
     below = int(np.flatnonzero((sides == -1).any(axis=1))[0])
     assert run.array("dem", "thrust_place")[-1, below, 0] == pytest.approx(1.5, abs=1e-3)
     assert (np.sort(sides, axis=1) == [0, 1]).all(axis=1).sum() == 3
+
+
+def test_threads_that_rigid_contacts_do_not_use_are_stated(tmp_path) -> None:
+    deck = tmp_path / "deck.toml"
+    deck.write_text('[structure]\nkind = "block"\nwidth = 1\nheight = 2\n' + STILL.format(end=0.05) + RIGID)
+    said = [any("uses one thread" in text for text in extrados.run(deck, threads=n).analyses[0]["warnings"]) for n in (None, 1, 2)]
+    assert said == [False, False, True]

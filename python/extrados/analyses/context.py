@@ -33,7 +33,7 @@ class Refused(Exception):
 class Context:
     """What every driver is given. `progress(done, total, text)` may be called often; `out` is the results
     folder of the run, `tell` shows words to the user before the end, `resume` asks to go on from a checkpoint beside it, `scheduler` is the address of a
-    dask.distributed scheduler for sweeps. `building` is the deck's, as the running analysis sees it. `motions` keeps
+    dask.distributed scheduler for sweeps. `threads_given`: the user named the number of threads. `building` is the deck's, as the running analysis sees it. `motions` keeps
     what was made of motion tables."""
 
     deck: Deck
@@ -44,6 +44,7 @@ class Context:
     resume: bool = False
     scheduler: str = ""
     warnings: list[str] = field(default_factory=list)
+    threads_given: bool = False
     building: Building = None  # type: ignore[assignment]
     motions: "dict[str, Motion]" = field(default_factory=dict)
 

@@ -44,7 +44,8 @@ def run(
         for deck in checked:
             progress = progress_shown(quiet or as_json)
             tell = (lambda text: None) if quiet or as_json else out_console.say
-            context = Context(deck, usable_threads(threads), progress, tell, resume=resume, scheduler=scheduler)
+            given = threads is not None
+            context = Context(deck, usable_threads(threads), progress, tell, resume=resume, scheduler=scheduler, threads_given=given)
             place = out or deck.default_out
             try:
                 found = run_to(context, place, figures=False)

@@ -110,11 +110,14 @@ def moved_supports(seen: BlocksSeen, moves: Sequence[SupportMove], axes: int, sh
 
 
 def begun_result(context: Context, found: dem_run.FoundRun) -> Result:
-    """The result of a run before its values: whether it was interrupted, and when."""
+    """The result of a run before its values: whether it was interrupted, and when, and that rigid contacts use one thread."""
+    one = context.threads_given and context.threads > 1 and found.effort.steps > 0
+    text = f"a run on rigid contacts uses one thread, not the {context.threads} requested"
+    warnings = [text] if one else []
     if not found.interrupted:
-        return Result("dem")
+        return Result("dem", warnings=warnings)
     again = "; --resume continues from here" if context.checkpoint is not None and len(found.time) else ""
-    return Result("dem", status="interrupted", reason=f"interrupted at {found.stop_time:.3f} s{again}")
+    return Result("dem", status="interrupted", reason=f"interrupted at {found.stop_time:.3f} s{again}", warnings=warnings)
 
 
 def numbers_of(options: Dem, seen: BlocksSeen, collapse: measures.Collapse) -> dict[str, Any]:
