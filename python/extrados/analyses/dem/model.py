@@ -87,7 +87,7 @@ class Model:
                 laws.append(one)
             joints[pair] = numbers[one]
         r = self.rigid
-        return dem.Bodies(r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints, self.ties.core, self.load)
+        return dem.Bodies(r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints, self.ties.core, load=self.load)
 
     def drawn(self) -> dem_run.DrawnContacts:
         """The joints between two bodies, for their forces and places."""
