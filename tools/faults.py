@@ -279,10 +279,11 @@ def _is_python(lines: list[str]) -> bool:
 
 
 def hands_on(fault: Fault) -> bool:
-    """Whether a fault changes more than rounding, a measure of progress or a constant of a kernel."""
+    """Whether a fault changes more than rounding, a measure of progress or of time, or a constant of a kernel."""
     at = next(k for k, (old, new) in enumerate(zip(fault.old + "\0", fault.new + "\0", strict=False)) if old != new)
     rounds = fault.kind == "sign" and ROUNDING.match(fault.old, at)
-    return not rounds and "progress(" not in fault.old and (fault.in_python or fault.kind in OF_KERNELS)
+    schedules = any(word in fault.old for word in ("progress(", "deadline"))
+    return not rounds and not schedules and (fault.in_python or fault.kind in OF_KERNELS)
 
 
 def draw(count: int, seed: int, rooms: Iterable[str], python: bool = False, joins: bool = False) -> list[Fault]:

@@ -140,6 +140,7 @@ def a_tilt_of_elements_ends_by_collapse(deck: Deck, within: float) -> None:
     ok(answer)
     r = answer.results
     must((r.test, r.outcome, r.load_direction) == ("tilt", "collapse", "+x"), f"{r.test} {r.outcome} {r.load_direction}")
+    near("tilt of the ground", [r.tilt_angle_deg, r.tilt_angle_opposite_deg], np.degrees(np.arctan(answer.capacity)), 1e-9)
     must(answer.verdict.capacity is None or abs(answer.verdict.capacity - min(answer.capacity)) < within, f"{answer.verdict}")
 
 
@@ -278,3 +279,17 @@ def shear_strength_is_bounded_by_tension(across: float, along: float, more: floa
         must("shear_strength" in str(error), str(error))
     else:
         must(False, f"shear strength {1.0 + more} of the greatest is accepted")
+
+
+MORTARED = st.tuples(decks("block", "column", friction=number(0.6, 0.9, 4)), number(0.0, 2e5, 3), number(0.0, 2e5, 3))
+
+
+@relation("dem", MORTARED, 0.0, share=0.5)
+def rigid_contacts_remark_on_mortar(deck: Deck, tension: float, cohesion: float, within: float) -> None:
+    """On rigid contacts a remark says that mortar is found at its strongest: with tension or cohesion or both, and not of dry joints."""
+    keys = {**RIGID, "end_time": 0.05, "time_step": 2e-3, "perturbed": False}
+    made = changed(deck, motion=PULSE, joints={"tension": tension, "cohesion": cohesion})
+    answer = ask(made, "dem", **keys)
+    ok(answer)
+    said = "mortar holds if its strength" in answer.warnings
+    must(said == (max(tension, cohesion) > 0.0), f"tension {tension}, cohesion {cohesion}: {answer.warnings}")

@@ -316,6 +316,8 @@ def test_the_spectrum_of_the_site_explains_what_that_of_the_motion_would_change(
     if found:
         stated(found)
         assert abs(found.numbers["other_margin"] / then - 1.0) < 1e-9 and found.numbers["governing_margin"] == margin
+        labels = [every[n].label for pair in want for n in pair if n != "code-checks"]
+        assert found.text.endswith(f"would agree with {', '.join(labels[:-1])}{' and ' if labels[1:] else ''}{labels[-1]}.")
 
 
 PLAN = make_deck(
