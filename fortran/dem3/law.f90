@@ -350,7 +350,7 @@ contains
       type(contact_pair), intent(inout) :: pair
       real(wp), intent(out) :: gap(:)           !! (points) [m]
       real(wp), intent(out) :: elastic(:)       !! (points) see spring_share
-      real(wp), dimension(pair%points) :: spring, overlap, force
+      real(wp), dimension(pair%points) :: spring, trial, overlap, force
       real(wp) :: corner(3, pair%points), normal(3), at(3)
       integer :: i
       do i = 1, pair%points
@@ -358,9 +358,10 @@ contains
          gap(i) = gap(i) - merge(max(pair%point(i)%filled, 0.0_wp), pair%point(i)%filled, gap(i) >= 0.0_wp)
          corner(:, i) = pair%point(i)%what%at
          spring(i) = law%normal_stiffness * pair%point(i)%what%area
+         trial(i) = -spring(i) * gap(i)
          overlap(i) = pair%point(i)%overlap
       end do
-      call press_face(corner, spring, -spring * gap, law%normal_stiffness, law%strength, overlap, force, pair%crushed)
+      call press_face(corner, spring, trial, law%normal_stiffness, law%strength, overlap, force, pair%crushed)
       do i = 1, pair%points
          elastic(i) = spring_share((force(i) - pair%point(i)%spring_n) / spring(i), &
             max(overlap(i), 0.0_wp) - max(pair%point(i)%overlap, 0.0_wp), gap(i) >= 0.0_wp)

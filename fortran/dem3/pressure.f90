@@ -48,7 +48,8 @@ contains
       call evaluate(overlap, value, energy, slope, bend)
       do k = 1, most_rounds
          if (maxval(abs(slope)) <= fine * maxval(abs(trial))) exit
-         call solve(bend, -slope, way)
+         next = -slope
+         call solve(bend, next, way)
          descent = dot_product(slope, way)
          share = 1.0_wp
          do cut = 1, most_cuts
@@ -72,7 +73,7 @@ contains
          real(wp), intent(out) :: gradient(:)    !! [N]
          real(wp), intent(out) :: second(:, :)   !! [N/m]
          real(wp) :: middle(3), one(3), other(3), normal(3), pressed(3), beyond(3), push(3), area
-         real(wp) :: all_of(3, 3), crushed(3, 3), part(3, size(g))
+         real(wp) :: all_of(3, 3), crushed(3, 3), part(3, 3)
          integer :: i, j, n
          n = size(g)
          middle = sum(corner, dim=2) / n
@@ -97,13 +98,20 @@ contains
             push = matmul(all_of, pressed) - matmul(crushed, beyond)
             face = face + 0.5_wp * (dot_product(pressed, matmul(all_of, pressed)) &
                - dot_product(beyond, matmul(crushed, beyond))) / (stiffer * stiffness)
-            ! Share of each corner in the three of the triangle
-            part = 0.0_wp
-            part(1, :) = 1.0_wp / n
-            part(2, i) = 1.0_wp
-            part(3, j) = 1.0_wp
-            gradient = gradient + matmul(push, part)
-            second = second + stiffer * stiffness * matmul(transpose(part), matmul(all_of - crushed, part))
+            ! The mean shares with all corners
+            part = stiffer * stiffness * (all_of - crushed)
+            gradient = gradient + push(1) / n
+            gradient(i) = gradient(i) + push(2)
+            gradient(j) = gradient(j) + push(3)
+            second = second + part(1, 1) / n**2
+            second(:, i) = second(:, i) + part(1, 2) / n
+            second(i, :) = second(i, :) + part(1, 2) / n
+            second(:, j) = second(:, j) + part(1, 3) / n
+            second(j, :) = second(j, :) + part(1, 3) / n
+            second(i, i) = second(i, i) + part(2, 2)
+            second(j, j) = second(j, j) + part(3, 3)
+            second(i, j) = second(i, j) + part(2, 3)
+            second(j, i) = second(j, i) + part(2, 3)
          end do
          whole = face + sum((0.5_wp * spring * g - trial) * g)
       end subroutine evaluate
