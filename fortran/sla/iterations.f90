@@ -44,9 +44,11 @@ module sla_iterations
    integer, parameter :: most_newton = 12, most_loops = 300, most_inner = 40, most_halvings = 4
    !> Iterations in which Newton's method must halve the residual
    integer, parameter :: most_vain = 4
-   !> Work of the forces out of balance at the end of a way over that at its start, at most; trials to find such an end, the
-   !> factors by which one is longer and shorter than the last, and the longest way
-   real(wp), parameter :: most_work = 0.7_wp, longer(2) = [1.5_wp, 4.0_wp], shorter = 0.1_wp, longest_way = 16.0_wp
+   !> Work of the forces out of balance at the end of a way over that at its start, at most: where they still drive it, and where
+   !> they oppose it, as damage that goes too far stays; factors by which a way is longer and shorter than the last one tried,
+   !> the longest way, and the trials
+   real(wp), parameter :: most_driving = 0.7_wp, most_opposing = 0.1_wp, longer(2) = [1.5_wp, 2.0_wp], shorter = 0.1_wp, &
+      longest_way = 4.0_wp
    integer, parameter :: most_searches = 6
    !> Loop of a staggered step after which Newton's method tries first, and then each time twice as many later
    integer, parameter :: first_try = 4
@@ -670,7 +672,7 @@ contains
       do trial = 1, most_searches
          call evaluate(model, by_secant, trial == 1, energy, scale)
          now = dot_product(model%solution%force(1:model%mesh%equations), model%solution%z(:, 1))
-         if (abs(now) <= -most_work * work .or. (now < 0.0_wp .and. part >= longest_way)) exit
+         if (now <= -most_opposing * work .and. (now >= most_driving * work .or. part >= longest_way)) exit
          if (now > 0.0_wp) then
             next = part * max(shorter, work / (work - now))
             if (part > 1.0_wp) next = max(1.0_wp, next)
