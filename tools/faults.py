@@ -21,10 +21,21 @@ FAULTS = {
     "bound": [(r"(?<=\bdo \w = )1(?=, )", "2"), (r"(?<=\bdo [ijk] = )(\w+), (\w+)$", r"\1, \2 - 1")],
 }
 IN_C = {" == ": " != "}
+#: A fault of a join changes a number, a set of blocks, a sense or an outcome that one part of the program hands to another.
+#: Faults that change only words, schedules, files, speed or rounding are not drawn. These keywords hand over no part of a
+#: building, a motion or a result:
+NOT_HANDED_ON = (
+    *("strict", "axis", "axis1", "axis2", "dtype", "default", "initial", "keepdims", "minlength", "return_inverse", "rcond", "dir"),
+    *("threads", "scheduler", "out", "resume", "files", "figures", "path", "sha256", "seconds", "slow", "parallel", "tell", "exceptions"),
+)
+#: Signs that change rounding or words alone: those before tolerances and before the most names of a text
+ROUNDING = re.compile(r"[-+] (?:\d+(?:\.\d*)?e-(?:[5-9]|\d\d)|(?:SAME|NIL|OPEN|MOST_\w+|small)\b)")
+#: Kinds of faults in kernels at the joins: most constants there are tolerances, limits of iterations and digits of a fit
+OF_KERNELS = ("sign", "operator", "comparison", "bound")
 #: Faults of Python, whose texts and comments are left as they are
 IN_PYTHON = {
     "sign": [(r"(?<=[\w)\]]) \+ (?=[\w(\[])", " - "), (r"(?<=[\w)\]]) - (?=[\w(\[])", " + "), (r"(?<=[=(,] )-(?=[a-z(])", "")],
-    "key": [(r", (?!strict\b)\w+=[\w.]+(?=[,)])", "")],
+    "key": [(rf", (?!(?:{'|'.join(NOT_HANDED_ON)})\b)\w+=[\w.]+(?=[,)])", "")],
     "filter": [(r"(?<=.) if (?:(?!\belse\b)[^\[\]{}:])+(?=[\]})])", ""), (r"(?<=[)\]]) & (?=\()", " | ")],
     "set": [
         (r"\bmin\(", "max("),
@@ -66,7 +77,6 @@ JOINS = (
     "analyses/left_out.py",
     "analyses/motion_source.py",
     "analyses/assess/asking.py",
-    "analyses/assess/words.py",
     "analyses/assess/reasons_of_buildings.py",
     "analyses/assess/reasons_of_motion.py",
     "analyses/assess/reasons_of_statics.py",
@@ -268,13 +278,20 @@ def _is_python(lines: list[str]) -> bool:
     return True
 
 
+def hands_on(fault: Fault) -> bool:
+    """Whether a fault changes more than rounding, a measure of progress or a constant of a kernel."""
+    at = next(k for k, (old, new) in enumerate(zip(fault.old + "\0", fault.new + "\0", strict=False)) if old != new)
+    rounds = fault.kind == "sign" and ROUNDING.match(fault.old, at)
+    return not rounds and "progress(" not in fault.old and (fault.in_python or fault.kind in OF_KERNELS)
+
+
 def draw(count: int, seed: int, rooms: Iterable[str], python: bool = False, joins: bool = False) -> list[Fault]:
     """Faults of packages, of all kinds: each package in proportion to the root of its size, its kinds in turn; joins: at the joins alone."""
     by_room: dict[str, list[Fault]] = {}
     if python:
         for join in JOINS:
             room = "/".join(join.split("/")[:-1])
-            by_room.setdefault(room, []).extend(python_faults_of(apart.ROOT / PACKAGE / join))
+            by_room.setdefault(room, []).extend(filter(hands_on, python_faults_of(apart.ROOT / PACKAGE / join)))
     else:
         for room in rooms:
             files = sorted([*(apart.ROOT / room).glob("*.f90"), *(apart.ROOT / room).glob("*.c")])
@@ -282,7 +299,7 @@ def draw(count: int, seed: int, rooms: Iterable[str], python: bool = False, join
     if joins and not python:
         by_room = {}
         for file in KERNELS:
-            by_room.setdefault("/".join(file.split("/")[:2]), []).extend(faults_of(apart.ROOT / file))
+            by_room.setdefault("/".join(file.split("/")[:2]), []).extend(filter(hands_on, faults_of(apart.ROOT / file)))
     weight = {room: len(there) ** 0.5 for room, there in by_room.items()}
     chosen = []
     for room, there in by_room.items():

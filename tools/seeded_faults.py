@@ -3,10 +3,12 @@
     python tools/seeded_faults.py [--count 80] [--seed 1] [--place build/faults] [--again] [--package NAME] [--only FILE:LINE]
     python tools/seeded_faults.py --suite properties [--python] [--count 30]
 
-In Fortran and C a fault is a changed sign or operator, constant, comparison or bound of a loop; in Python (`--python`), at
-the joins of strategies alone, a changed sign, a dropped key or filter, another set of blocks, a unit factor or an outcome. Its place
-is drawn from the seed; every package gets its share. A fault counts as caught if the build, a quick test of its package or a case
-fails; with `--suite properties` if the build or the property suite alone fails (tests/properties): of Python the relations that
+In Fortran and C a fault is a changed sign or operator, constant, comparison or bound of a loop. In Python (`--python`), at
+the joins of strategies alone, it is a changed sign, a dropped key or filter, another set of blocks, a unit factor or an outcome.
+The rule of a fault of a join (faults.py) precedes the draw. Faults that change only words, schedules, files, rounding or
+a constant of a kernel are not drawn. The place is drawn from the seed; every package gets its share. A fault counts as caught if
+the build, a quick test of its package or a case fails; with `--suite properties` if the build or the property suite alone
+fails (tests/properties): of Python the relations that
 run through the changed line, of the kernels those that call the changed module, the quickest first, and those whose results change again with
 more cases. A fault that changes no result of the suite, one that no relation runs through and one that exceeds its processor time are named. Tests that fail
 without a fault are found first, and skipped. The fate of each fault is kept in the place, and an interrupted run

@@ -1,12 +1,12 @@
 !> Discrete elements of the plane: blocks behind a handle, built in steps, and what a run leaves of them.
 !>
-!> create, laws (api_dem_run), joints, start, moves, surroundings; then the run (api_dem_run); then bodies and contacts.
+!> create, laws (api_dem_run), joints, start, loads, moves, surroundings; then the run (api_dem_run); then bodies and contacts.
 !> Body numbers are 1-based; mass 0 marks a support.
 module api_dem
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: create, joints, start, moves, surroundings, bodies, contacts
+   public :: create, joints, start, loads, moves, surroundings, bodies, contacts
 
 contains
 
@@ -62,6 +62,28 @@ contains
       if (status == status_ok) call set_start(built, shift, rate)
       call handle_leave(handle)
    end subroutine start
+
+   !> Constant loads
+   subroutine loads(handle, nb, load, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use dem_plane_handle, only : built_blocks, blocks_take
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nb                        !! bodies
+      real(c_double), intent(in) :: load(4, nb)               !! force x, y [N], moment about the centroid, arm times force [N m]
+      integer(c_int), intent(out) :: status
+      type(built_blocks), pointer :: built
+      integer :: k
+      call blocks_take(handle, built, status)
+      if (status /= status_ok) return
+      if (nb /= size(built%set%item)) status = status_invalid_argument
+      if (status == status_ok) then
+         do k = 1, nb
+            built%set%item(k)%load = load(:, k)
+         end do
+      end if
+      call handle_leave(handle)
+   end subroutine loads
 
    !> Supports that move
    subroutine moves(handle, nmove, body, move, status)

@@ -1,13 +1,14 @@
 !> Runs of discrete elements, of the plane (built by api_dem) or of space (api_dem3).
 !>
-!> laws, options, rigid and ties; then start and run, as often as wanted; then summary, effort, history and tensions of
+!> laws, options, rigid, ties and places; then start and run, as often as wanted; then summary, effort, history and tensions of
 !> the last run.
 !> A run that pauses continues where run is called again; its state can be kept, and given to resume instead of start.
 module api_dem_run
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: laws, options, rigid, ties, start, run, state_size, state, resume, summary, effort, history, joint_forces, tensions
+   public :: laws, options, rigid, ties, places, start, run, state_size, state, resume, summary, effort, history, joint_forces, &
+      place_forces, tensions
 
 contains
 
@@ -127,6 +128,27 @@ contains
       call tie_set_new(value, first, closed, body, point, place, int(nbody), built%ties, status)
       call handle_leave(handle)
    end subroutine ties
+
+   !> Contacts whose forces are recorded with their places, see dem_places
+   subroutine places(handle, ncontact, ncorner, joint, corner, x, normal, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use dem_handle, only : built_model, model_take
+      use dem_places, only : places_new
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: ncontact
+      integer(c_int), intent(in) :: ncorner
+      integer(c_int), intent(in) :: joint(ncontact)           !! its pair, in the order of joint_forces, 1-based; ascending
+      integer(c_int), intent(in) :: corner(ncontact + 1)      !! first corner of each, 1-based
+      real(c_double), intent(in) :: x(3, ncorner)             !! in the frame of the first body [m]
+      real(c_double), intent(in) :: normal(3, ncontact)       !! unit vectors in that frame
+      integer(c_int), intent(out) :: status
+      class(built_model), pointer :: built
+      call model_take(handle, built, status)
+      if (status /= status_ok) return
+      call places_new(joint, corner, x, normal, built%places, status)
+      call handle_leave(handle)
+   end subroutine places
 
    !> A run that has not begun, instead of the last one
    subroutine start(handle, nt, wanted, status)
@@ -351,6 +373,30 @@ contains
       end if
       call handle_leave(handle)
    end subroutine joint_forces
+
+   !> Forces of the contacts of `places` at the points of the last run's history
+   subroutine place_forces(handle, nc, nt, press, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use dem_handle, only : run_take
+      use dem_simulation, only : simulation
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nc                        !! contacts
+      integer(c_int), intent(in) :: nt                        !! points, see summary
+      !> force on the first body [N], normal force [N], normal force times its place in the frame of that body [N m]
+      real(c_double), intent(out) :: press(7, nc, nt)
+      integer(c_int), intent(out) :: status
+      class(simulation), pointer :: run
+      press = 0.0_c_double
+      call run_take(handle, run, status)
+      if (status /= status_ok) return
+      status = status_invalid_argument
+      if (nc == size(run%record%press, 2) .and. nt <= run%record%points) then
+         status = status_ok
+         press = run%record%press(:, :, 1:nt)
+      end if
+      call handle_leave(handle)
+   end subroutine place_forces
 
    !> Tensions in the ties that the last run recorded, and of all its steps the extremes
    subroutine tensions(handle, ntie, nt, tension, extreme, status)

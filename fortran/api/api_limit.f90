@@ -3,7 +3,7 @@ module api_limit
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: vertex, factor_band, solve_band
+   public :: vertex, factor_band, solve_band, lay_springs, factor_springs, solve_springs
 
 contains
 
@@ -49,5 +49,47 @@ contains
       !f2py threadsafe
       call extrados_band_solve(int(n, c_int64_t), int(high - 1, c_int64_t), band, x)
    end subroutine solve_band
+
+   !> Stiffness of blocks on springs at their points of contact, as a band
+   subroutine lay_springs(most, d, points, high, n, arms, row, springs, band)
+      use limit_springs, only : lay => lay_springs
+      integer(c_int), intent(in) :: most                       !! equations of a point
+      integer(c_int), intent(in) :: d                          !! components of a force
+      integer(c_int), intent(in) :: points                     !! of contact
+      integer(c_int), intent(in) :: high                       !! 3 width + 1
+      integer(c_int), intent(in) :: n                          !! equations
+      real(c_double), intent(in) :: arms(most, d, points)      !! forces on the equations of each point
+      integer(c_int), intent(in) :: row(most, points)          !! its equations, 0 beyond their number
+      real(c_double), intent(in) :: springs(d, d, points)      !! forces by motions, the second index for the force
+      real(c_double), intent(inout) :: band(high, n)           !! replaced
+      !f2py threadsafe
+      call lay(arms, row, springs, band)
+   end subroutine lay_springs
+
+   !> Factors of a band without symmetry, in its place
+   subroutine factor_springs(high, n, band, pivot, status)
+      use limit_springs, only : factor => factor_springs
+      integer(c_int), intent(in) :: high              !! 3 width + 1
+      integer(c_int), intent(in) :: n                 !! equations
+      real(c_double), intent(inout) :: band(high, n)  !! of lay_springs
+      integer(c_int), intent(out) :: pivot(n)         !! of the rows
+      integer(c_int), intent(out) :: status
+      !f2py threadsafe
+      call factor(band, pivot, status)
+   end subroutine factor_springs
+
+   !> The x of K x = b by the factors of factor_springs
+   subroutine solve_springs(high, n, sides, band, pivot, x, status)
+      use limit_springs, only : solve => solve_springs
+      integer(c_int), intent(in) :: high              !! 3 width + 1
+      integer(c_int), intent(in) :: n                 !! equations
+      integer(c_int), intent(in) :: sides             !! right-hand sides
+      real(c_double), intent(in) :: band(high, n)     !! what factor_springs left there
+      integer(c_int), intent(in) :: pivot(n)          !! of factor_springs
+      real(c_double), intent(inout) :: x(n, sides)    !! b, then x
+      integer(c_int), intent(out) :: status
+      !f2py threadsafe
+      call solve(band, pivot, x, status)
+   end subroutine solve_springs
 
 end module api_limit

@@ -5,7 +5,7 @@ module dem_bodies
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: body, part, edge, body_set, body_set_new, body_turn, most_vertices
+   public :: body, part, edge, body_set, body_set_new, body_turn, load_moment, load_potential, most_vertices
 
    !> Vertices of one convex part, at most
    integer, parameter :: most_vertices = 64
@@ -17,6 +17,8 @@ module dem_bodies
       real(wp) :: vx = 0.0_wp, vy = 0.0_wp, spin = 0.0_wp      !! velocity [m/s], [rad/s]
       real(wp) :: px = 0.0_wp, py = 0.0_wp, pspin = 0.0_wp     !! velocity predicted for the next half step
       real(wp) :: fx = 0.0_wp, fy = 0.0_wp, moment = 0.0_wp    !! contact force [N], moment about the centroid [N m]
+      !> Constant load: force [N], its moment about the centroid and the sum of arm times force before the body rotates [N m]
+      real(wp) :: load(4) = 0.0_wp
       real(wp) :: inverse_mass = 0.0_wp                        !! 0 for a support
       real(wp) :: inverse_inertia = 0.0_wp
       real(wp) :: mass = 0.0_wp                                !! [kg]
@@ -136,5 +138,23 @@ contains
       b%c = cos(b%angle)
       b%s = sin(b%angle)
    end subroutine body_turn
+
+   !> Moment about the centroid of constant forces at places that rotate with the body [N m]
+   elemental function load_moment(b) result(moment)
+      type(body), intent(in) :: b
+      real(wp) :: moment
+      moment = b%c * b%load(3) - b%s * b%load(4)
+   end function load_moment
+
+   !> Potential of these forces at a place and rotation of the body, over that at rest [J]
+   pure function load_potential(b, x, y, angle) result(energy)
+      type(body), intent(in) :: b
+      real(wp), intent(in) :: x          !! [m]
+      real(wp), intent(in) :: y          !! [m]
+      real(wp), intent(in) :: angle      !! [rad]
+      real(wp) :: energy
+      energy = -b%load(1) * (x - b%rest_x) - b%load(2) * (y - b%rest_y) &
+         - b%load(3) * (sin(angle) - sin(b%rest_angle)) - b%load(4) * (cos(angle) - cos(b%rest_angle))
+   end function load_potential
 
 end module dem_bodies

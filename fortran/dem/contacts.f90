@@ -10,7 +10,12 @@ module dem_contacts
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: contact_point, contact_pair, contact_set, overlap, measure_overlap, choose_edges, pair_loss, place_part
+   public :: contact_point, contact_pair, contact_set, overlap, measure_overlap, measure_springs, choose_edges, pair_loss, &
+      place_part
+
+   !> What meets at a contact point: a corner of the incident part and the reference edge, or an end of the reference edge
+   !> and the incident one
+   integer, parameter :: unknown = -1, corner = 0, low_end = 1, high_end = 2
 
    !> Memory of one contact point
    type :: contact_point
@@ -23,6 +28,8 @@ module dem_contacts
       real(wp) :: damping_loss = 0.0_wp   !! [J]
       real(wp) :: slip(2) = 0.0_wp      !! on rigid contacts: sliding velocities of the last step and of the one before [m/s]
       real(wp) :: late = 0.0_wp         !! shear impulse that acts in the next step, see dem_rigid [N s]
+      real(wp) :: filled = 0.0_wp       !! 0, or the negative gap at which the spring has no force [m]
+      integer :: meets = unknown        !! what met here in the step before
       logical :: closed = .false.
       logical :: bonded = .false.       !! cohesion and tension not lost yet
    end type contact_point
@@ -44,6 +51,9 @@ module dem_contacts
       real(wp) :: support_work = 0.0_wp             !! done by moving supports [J]
       real(wp) :: crushed = 0.0_wp                  !! energy that crushing corners hold, see dem_crushing [J]
       real(wp) :: loss_before(2) = 0.0_wp           !! friction, damping of contacts that are gone [J]
+      !> Energy of springs that other edges do not take over: of shear ones times their stiffness k_s [J N/m^2], of normal
+      !> ones over theirs, k_n [m^3]. Counted as losses in the next step
+      real(wp) :: given_up(2) = 0.0_wp
       type(contact_point) :: point(2)
    end type contact_pair
 
@@ -77,6 +87,7 @@ module dem_contacts
       real(wp) :: x(2), y(2)            !! contact points [m]
       real(wp) :: gap(2)                !! distances, negative where they overlap [m]
       real(wp) :: width                 !! of the common stretch [m]
+      integer :: meets(2)               !! at each point
       logical :: propped(2) = .false.   !! without dashpot: open but pressed, or crushed altogether
    end type overlap
 
@@ -90,11 +101,12 @@ contains
    end function pair_loss
 
    !> Ends of the common stretch of reference and incident edge
-   pure subroutine measure_overlap(pair, a, b, now)
+   pure subroutine measure_overlap(pair, a, b, now, as)
       type(contact_pair), intent(in) :: pair
       type(body), intent(in) :: a           !! owner of the reference edge
       type(body), intent(in) :: b           !! owner of the incident edge
       type(overlap), intent(out) :: now
+      integer, intent(in), optional :: as(2)    !! what meets at the points, known or not; else what meets there now
       real(wp) :: tx, ty, ox, oy, ix, iy, s(2), gap(2), length, run, rise
       integer :: i
 
@@ -114,9 +126,15 @@ contains
       run = max((s(2) - s(1)) / length, tiny(1.0_wp))
       rise = (gap(2) - gap(1)) / length
       do i = 1, 2
-         if (s(i) < 0.0_wp .or. s(i) > pair%reference_length) then
+         now%meets(i) = corner
+         if (s(i) < 0.0_wp) now%meets(i) = low_end
+         if (s(i) > pair%reference_length) now%meets(i) = high_end
+         if (present(as)) then
+            if (as(i) /= unknown) now%meets(i) = as(i)
+         end if
+         if (now%meets(i) /= corner) then
             ! An end of the reference edge on the incident edge
-            length = merge(0.0_wp, pair%reference_length, s(i) < 0.0_wp)
+            length = merge(0.0_wp, pair%reference_length, now%meets(i) == low_end)
             now%gap(i) = run * (gap(i) + (length - s(i)) * rise / run)
             now%tx(i) = run * tx + rise * ty
             now%ty(i) = run * ty - rise * tx
@@ -133,6 +151,51 @@ contains
       end do
       now%width = s(2) - s(1)
    end subroutine measure_overlap
+
+   !> The same with the gaps of the springs. A spring whose corner passes to another edge keeps its energy where it would
+   !> gain, and the rest is a loss
+   pure subroutine measure_springs(pair, a, b, now)
+      type(contact_pair), intent(inout) :: pair
+      type(body), intent(in) :: a           !! owner of the reference edge
+      type(body), intent(in) :: b           !! owner of the incident edge
+      type(overlap), intent(out) :: now
+      type(overlap) :: was
+      integer :: i
+      call measure_overlap(pair, a, b, now)
+      if (any(now%meets /= pair%point%meets)) then
+         if (minval(now%gap) < 0.0_wp .or. any(pair%point%closed)) then
+            call measure_overlap(pair, a, b, was, pair%point%meets)
+            do i = 1, 2
+               if (now%meets(i) == pair%point(i)%meets .or. pair%point(i)%meets == unknown) cycle
+               call pass_on(pair%point(i), was%gap(i), now%gap(i), pair%given_up)
+            end do
+         end if
+         pair%point%meets = now%meets
+      end if
+      do i = 1, 2
+         associate (point => pair%point(i))
+            if (now%gap(i) >= 0.0_wp) point%filled = 0.0_wp
+            if (now%gap(i) < 0.0_wp .and. now%width <= 0.0_wp .and. .not. point%closed) point%filled = now%gap(i)
+            now%gap(i) = now%gap(i) - point%filled
+         end associate
+      end do
+   end subroutine measure_springs
+
+   !> A spring passes from one gap to another. Its energy would grow with a deeper overlap: it keeps its force there, and
+   !> the difference of the gaps has none. With a lesser overlap it loses energy
+   pure subroutine pass_on(point, was, now, given_up)
+      type(contact_point), intent(inout) :: point
+      real(wp), intent(in) :: was               !! gap by what met before, at the present places [m]
+      real(wp), intent(in) :: now               !! gap by what meets now [m]
+      real(wp), intent(inout) :: given_up(2)    !! see contact_pair
+      real(wp) :: pressed, presses
+      if (point%bonded) return
+      pressed = min(was - point%filled, 0.0_wp)
+      if (.not. point%closed) pressed = 0.0_wp
+      presses = max(pressed, min(now, 0.0_wp))
+      point%filled = min(now, 0.0_wp) - presses
+      given_up(2) = given_up(2) + 0.5_wp * point%length * (pressed**2 - presses**2)
+   end subroutine pass_on
 
    !> Vertices of a part where they are now
    pure subroutine place_part(set, p, x, n)
@@ -313,7 +376,8 @@ contains
    end subroutine take_edges
 
    !> Hand the memory of contact points to the new edges: each new point takes the nearest old one.
-   !> Forces keep their sense when the roles swap, since tangent and acting body both turn round.
+   !> Forces keep their sense when the roles swap, since tangent and acting body both turn round. A new point that takes
+   !> none begins without force, however deep the overlap: with its force at once the springs would gain energy.
    pure subroutine carry_over(set, old, new)
       type(body_set), intent(in) :: set
       type(contact_pair), intent(in) :: old
@@ -324,7 +388,7 @@ contains
       type(contact_point) :: memory(2)
       logical :: taken(2)
 
-      call measure_overlap(old, set%item(old%bodies(1)), set%item(old%bodies(2)), was)
+      call measure_overlap(old, set%item(old%bodies(1)), set%item(old%bodies(2)), was, old%point%meets)
       call measure_overlap(new, set%item(new%bodies(1)), set%item(new%bodies(2)), now)
       memory = old%point
       reach = 0.1_wp * min(old%reference_length, old%incident_length)
@@ -335,15 +399,20 @@ contains
       end do
       taken = .false.
       new%point = contact_point()
+      if (.not. any(memory%bonded)) new%point%filled = min(now%gap, 0.0_wp)
       do i = 1, 2
          j = merge(1, 2, distance(i, 1) <= distance(i, 2))
          if (distance(i, j) > reach .or. taken(j)) cycle
          if (distance(3 - i, j) < distance(i, j)) cycle
          new%point(i) = memory(j)
          taken(j) = .true.
+         call pass_on(new%point(i), was%gap(j), now%gap(i), new%given_up)
       end do
+      new%point%meets = now%meets
       do j = 1, 2
          if (taken(j)) cycle
+         if (memory(j)%closed) new%given_up = new%given_up + 0.5_wp * [memory(j)%spring_s**2 / memory(j)%length, &
+            memory(j)%length * (was%gap(j) - memory(j)%filled)**2]
          new%loss_before = new%loss_before + [memory(j)%friction_loss, memory(j)%damping_loss]
       end do
    end subroutine carry_over

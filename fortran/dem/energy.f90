@@ -15,7 +15,7 @@ module dem_energy
    type :: energy_terms
       real(wp) :: kinetic = 0.0_wp        !! [J], at the time of the forces
       real(wp) :: leapfrog = 0.0_wp       !! [J], the conserved form
-      real(wp) :: potential = 0.0_wp      !! of gravity, 0 at rest [J]
+      real(wp) :: potential = 0.0_wp      !! of gravity and constant loads, 0 at rest [J]
       real(wp) :: elastic = 0.0_wp        !! in the springs [J]
       real(wp) :: friction = 0.0_wp       !! lost by sliding and by breaking [J]
       real(wp) :: damping = 0.0_wp        !! lost in dashpots, or by impacts of rigid contacts [J]

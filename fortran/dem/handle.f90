@@ -12,6 +12,7 @@ module dem_handle
    use common_threads, only : threads_available
    use dem_joint, only : joint_law
    use dem_jointed, only : jointed_model
+   use dem_places, only : place_table
    use dem_rigid, only : rigid_setting
    use dem_run, only : run_begin, run_on
    use dem_simulation, only : run_options, simulation
@@ -28,6 +29,7 @@ module dem_handle
       type(run_options) :: options
       type(rigid_setting) :: rigid                 !! contacts without springs
       type(tie_set) :: ties
+      type(place_table) :: places                  !! contacts whose forces are recorded with their places
       type(joint_law), allocatable :: law(:)       !! the first is that of contacts that form later
       integer :: highest_law = 0                   !! that a joint has
       logical :: ready = .false.                   !! the options were given

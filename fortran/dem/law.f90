@@ -65,6 +65,10 @@ contains
       integer :: i
 
       own = law
+      if (any(pair%given_up > 0.0_wp)) then
+         pair%loss_before = pair%loss_before + pair%given_up * [1.0_wp / law%shear_stiffness, law%normal_stiffness]
+         pair%given_up = 0.0_wp
+      end if
       do i = 1, 2
          own%damping = merge(0.0_wp, law%damping, now%propped(i))
          associate (point => pair%point(i))
@@ -81,7 +85,7 @@ contains
                if (.not. point%closed) call close_point(pair, now%width, point)
                call press_point(own, kick, drift, now%gap(i), u_t, frame, a, b, point, force)
             else
-               call open_point(law, point)
+               call open_point(law, min(now%gap(i), 0.0_wp), point)
                force = point_force()
             end if
             point%damping_loss = point%damping_loss &
@@ -225,12 +229,16 @@ contains
       force%dash_s = force%shear - force%spring_s
    end subroutine press_shear
 
-   !> A point opens: what its springs held is lost
-   pure subroutine open_point(law, point)
+   !> A point opens: what its springs held is lost. Where it overlaps and yet no stretch is common to the edges, its normal
+   !> spring begins anew from there
+   pure subroutine open_point(law, gap, point)
       type(joint_law), intent(in) :: law
+      real(wp), intent(in) :: gap               !! of its spring, 0 where none overlaps [m]
       type(contact_point), intent(inout) :: point
       point%friction_loss = point%friction_loss + 0.5_wp * (point%spring_s**2 / law%shear_stiffness &
          + min(point%spring_n, 0.0_wp)**2 / law%normal_stiffness) / point%length
+      point%damping_loss = point%damping_loss + 0.5_wp * law%normal_stiffness * point%length * gap**2
+      point%filled = point%filled + gap
       point%closed = .false.
    end subroutine open_point
 

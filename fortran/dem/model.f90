@@ -2,9 +2,9 @@
 module dem_model
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
-   use dem_bodies, only : body, body_set, body_turn
+   use dem_bodies, only : body, body_set, body_turn, load_moment
    use dem_clock, only : begin_step, end_step
-   use dem_contacts, only : contact_pair, contact_set, overlap, measure_overlap, choose_edges
+   use dem_contacts, only : contact_pair, contact_set, overlap, measure_overlap, measure_springs, choose_edges
    use dem_crushing, only : crush_corners
    use dem_jointed, only : jointed_model
    use dem_law, only : apply_pair_law
@@ -130,7 +130,7 @@ contains
       end if
    end subroutine prepare_step
 
-   !> Velocity that follows from the forces of the last step; clears the forces
+   !> Velocity that follows from the forces of the last step; of the next ones it leaves the constant loads
    pure subroutine predict_velocity(model, b)
       type(block_model), intent(in) :: model
       type(body), intent(inout) :: b
@@ -146,9 +146,9 @@ contains
             ((model%pull(1) + model%pull_before(1) - 2.0_wp * model%gravity(1)) * b%vx &
             + (model%pull(2) + model%pull_before(2) - 2.0_wp * model%gravity(2)) * b%vy)
       end if
-      b%fx = 0.0_wp
-      b%fy = 0.0_wp
-      b%moment = 0.0_wp
+      b%fx = b%load(1)
+      b%fy = b%load(2)
+      b%moment = load_moment(b)
       b%touched = .false.
    end subroutine predict_velocity
 
@@ -178,7 +178,7 @@ contains
       real(wp) :: distance
       if (pair%careful) call choose_edges(model%set, model%contacts%skin, pair, distance)
       associate (a => model%set%item(pair%bodies(1)), b => model%set%item(pair%bodies(2)))
-         call measure_overlap(pair, a, b, now)
+         call measure_springs(pair, a, b, now)
          if (model%law(pair%law)%strength > 0.0_wp) call crush_corners(model%law(pair%law), pair, now)
          call apply_pair_law(model%law(pair%law), model%kick, model%drift, now, a, b, pair)
       end associate

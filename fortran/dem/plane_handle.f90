@@ -11,6 +11,7 @@ module dem_plane_handle
    use dem_model, only : block_model
    use dem_plane_run, only : block_simulation
    use dem_rigid, only : set_rigid
+   use dem_places, only : count_places, places_copy
    use dem_simulation, only : run_record_new
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
@@ -168,7 +169,7 @@ contains
       if (failed /= 0) return
       call start_model(built, run%model, status)
       if (status == status_ok) call run_record_new(size(built%set%item), 3, .false., count_ties(built), &
-         size(run%model%contacts%law_body), wanted, run%record, status)
+         size(run%model%contacts%law_body), count_places(built%places), wanted, run%record, status)
       if (status /= status_ok) return
       run%domain = built%domain
       call move_alloc(run, built%run)
@@ -204,6 +205,8 @@ contains
          model%contacts%law_number(:) = built%law_number
       end if
       if (moves > 0) model%load%move(:) = built%load%move
+      call places_copy(built%places, model%places, status)
+      if (status /= status_ok) return
       model%gravity = built%gravity
       model%load%moving_base = built%load%moving_base
       model%mass_damping = built%mass_damping

@@ -4,10 +4,11 @@ module dem_plane_run
    use common_lists, only : stop_end => dem_stop_end, stop_collapse => dem_stop_collapse, &
       stop_left => dem_stop_left, stop_overlap => dem_stop_overlap
    use common_status, only : status_ok, status_invalid_argument, status_not_finite, status_out_of_memory
-   use dem_bodies, only : body, body_set
+   use dem_bodies, only : body, body_set, load_potential
    use dem_contacts, only : contact_pair, contact_set, overlap, measure_overlap, pair_loss
    use dem_energy, only : energy_terms
    use dem_jointed, only : jointed_model
+   use dem_places, only : add_force, count_places, place_table
    use dem_law, only : elastic_energy
    use dem_model, only : block_model, advance_model, critical_step, finish_step, move_body
    use dem_moreau, only : greatest_speed, number_model_unknowns => number_unknowns, &
@@ -131,7 +132,8 @@ contains
                now%kinetic = now%kinetic + 0.125_wp * (b%mass * ((b%vx + vx - 2.0_wp * model%base(1))**2 &
                   + (b%vy + vy - 2.0_wp * model%base(2))**2) + b%inertia * (b%spin + spin)**2)
                now%potential = now%potential - b%mass * (model%gravity(1) * (b%x - model%drift * b%vx - b%rest_x) &
-                  + model%gravity(2) * (b%y - model%drift * b%vy - b%rest_y))
+                  + model%gravity(2) * (b%y - model%drift * b%vy - b%rest_y)) &
+                  + load_potential(b, b%x - model%drift * b%vx, b%y - model%drift * b%vy, b%angle - model%drift * b%spin)
                now%mass_damping = now%mass_damping + b%mass_loss
                now%work = now%work + b%work
             end associate
@@ -312,6 +314,8 @@ contains
          end do
       end associate
       call record_joints(run%model%set, run%model%contacts, run%record%joint(:, :, run%record%points))
+      if (count_places(run%model%places) > 0) call record_places(run%model%set, run%model%contacts, run%model%places, &
+         run%record%press(:, :, run%record%points))
    end subroutine record_state
 
    !> Forces of the joints in the last step, and the energy that they have dissipated
@@ -342,6 +346,46 @@ contains
          end associate
       end do
    end subroutine record_joints
+
+   !> Forces of the contacts as drawn in the last step, and their places
+   pure subroutine record_places(set, contacts, places, press)
+      type(body_set), intent(in) :: set
+      type(contact_set), intent(in) :: contacts
+      type(place_table), intent(in) :: places
+      real(wp), intent(out) :: press(:, :)          !! see dem_places
+      type(overlap) :: now
+      real(wp) :: normal, shear, way(2), force(2), at(2)
+      integer :: k, i
+      press = 0.0_wp
+      do k = 1, contacts%pairs
+         associate (pair => contacts%pair(k))
+            if (pair%joint == 0) cycle
+            call measure_overlap(pair, set%item(pair%bodies(1)), set%item(pair%bodies(2)), now)
+            associate (low => set%item(minval(pair%bodies)))
+               do i = 1, 2
+                  if (.not. pair%point(i)%closed) cycle
+                  normal = pair%point(i)%spring_n + pair%point(i)%dash_n
+                  shear = pair%point(i)%spring_s + pair%point(i)%dash_s
+                  way = [now%ty(i), -now%tx(i)]
+                  force = normal * way + shear * [now%tx(i), now%ty(i)]
+                  ! The forces of points are those on the second body.
+                  if (pair%bodies(1) < pair%bodies(2)) force = -force
+                  at = [now%x(i) - low%x, now%y(i) - low%y]
+                  call add_force(places, pair%joint, own_axes(low, at), own_axes(low, way), [force, 0.0_wp], &
+                     pair%point(i)%spring_n, press)
+               end do
+            end associate
+         end associate
+      end do
+   end subroutine record_places
+
+   !> A vector of the plane in the axes of a body
+   pure function own_axes(b, v) result(own)
+      type(body), intent(in) :: b
+      real(wp), intent(in) :: v(2)
+      real(wp) :: own(3)
+      own = [b%c * v(1) + b%s * v(2), b%c * v(2) - b%s * v(1), 0.0_wp]
+   end function own_axes
 
    function list_sizes(run) result(told)
       class(block_simulation), intent(in) :: run

@@ -7,6 +7,7 @@ module dem_simulation
    use common_threads, only : choose_threads, learn_pace, thread_pace
    use dem_energy, only : energy_terms
    use dem_jointed, only : jointed_model
+   use dem_places, only : press_rows
    use dem_rigid, only : suitable_step, wait_for_rest
    use dem_tape, only : tape
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
@@ -49,6 +50,7 @@ module dem_simulation
       real(wp), allocatable :: tension(:, :)    !! (ties, nt) [N]
       !> (5, joints, nt) force on the first body of each joint [N], losses by friction and in dashpots so far [J]
       real(wp), allocatable :: joint(:, :, :)
+      real(wp), allocatable :: press(:, :, :)   !! (press_rows, contacts, nt) see dem_places
       integer :: points = 0
       integer(c_int) :: reason = stop_end
       integer :: blamed(2) = 0               !! bodies that caused the stop, 0 none
@@ -202,12 +204,13 @@ module dem_simulation
 contains
 
    !> A record for `bodies` bodies at the times `wanted`
-   subroutine run_record_new(bodies, rates, attitudes, ties, joints, wanted, record, status)
+   subroutine run_record_new(bodies, rates, attitudes, ties, joints, contacts, wanted, record, status)
       integer, intent(in) :: bodies
       integer, intent(in) :: rates                   !! of a body
       logical, intent(in) :: attitudes               !! they are no part of its place
       integer, intent(in) :: ties
       integer, intent(in) :: joints                  !! whose forces are recorded
+      integer, intent(in) :: contacts                !! the same with places
       real(wp), intent(in) :: wanted(:)              !! [s]
       type(run_record), intent(out) :: record
       integer(c_int), intent(out) :: status
@@ -215,7 +218,8 @@ contains
       nt = size(wanted)
       allocate (record%wanted(nt), record%time(nt), record%place(3, bodies, nt), record%rate(rates, bodies, nt), &
          record%turn(3, 3, merge(bodies, 0, attitudes), nt), record%energy(dem_energy_count, nt), &
-         record%tension(ties, nt), record%joint(5, joints, nt), stat=failed)
+         record%tension(ties, nt), record%joint(5, joints, nt), &
+         record%press(press_rows, contacts, nt), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed == 0) record%wanted(:) = wanted
    end subroutine run_record_new

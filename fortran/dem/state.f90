@@ -116,6 +116,7 @@ contains
          call on%pass(record%energy(:, 1:n), storage_size(record%energy))
          call on%pass(record%tension(:, 1:n), storage_size(record%tension))
          call on%pass(record%joint(:, :, 1:n), storage_size(record%joint))
+         call on%pass(record%press(:, :, 1:n), storage_size(record%press))
          call on%pass(record%blamed, storage_size(record%blamed))
          call on%pass(record%settling, storage_size(record%settling))
          call on%pass(record%searches, storage_size(record%searches))

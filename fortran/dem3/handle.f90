@@ -7,6 +7,7 @@ module dem3_handle
    use dem_handle, only : built_model, count_ties, model_register, model_take
    use dem_loading, only : accept_moves, loading
    use dem_rigid, only : set_rigid
+   use dem_places, only : count_places, places_copy
    use dem_simulation, only : run_record_new
    use dem3_bodies, only : body_set, body_set_new, copy_bodies
    use dem3_dowels, only : dowel
@@ -201,8 +202,8 @@ contains
       status = status_out_of_memory
       allocate (run, stat=failed)
       if (failed /= 0) return
-      call run_record_new(size(built%set%item), 6, .true., count_ties(built), size(built%law_of, 2), wanted, &
-         run%record, status)
+      call run_record_new(size(built%set%item), 6, .true., count_ties(built), size(built%law_of, 2), &
+         count_places(built%places), wanted, run%record, status)
       if (status /= status_ok) return
       associate (model => run%model)
          call copy_bodies(built%set, model%set, status)
@@ -223,6 +224,8 @@ contains
             if (failed /= 0) return
             model%load%move(:) = built%load%move
          end if
+         call places_copy(built%places, model%places, status)
+         if (status /= status_ok) return
          model%gravity = built%gravity
          model%way = built%way
          call set_rigid(model%rigid, model%model_clock, built%rigid, norm2(model%gravity), model%set%size, &

@@ -6,11 +6,13 @@ module dem3_run
    use dem_clock, only : end_step
    use dem_energy, only : energy_terms
    use dem_jointed, only : jointed_model
+   use dem_places, only : add_force, count_places
    use dem_simulation, only : model_sizes, simulation, slides_not
    use dem_tape, only : tape, loading
    use dem_ties, only : forget_tie_losses
    use dem3_bodies, only : body, spin_of, turn_freely
    use dem3_law, only : contact_point
+   use dem3_patch, only : measure_feature
    use dem3_moreau, only : greatest_speed, number_model_unknowns => number_unknowns, &
       solve_model_contacts => solve_contacts
    use dem3_model, only : advance_model, colour_pairs, critical_step, model_energy => energy_now, move_body, &
@@ -285,6 +287,7 @@ contains
          end do
       end associate
       call record_joints(run%model, run%record%joint(:, :, run%record%points))
+      if (count_places(run%model%places) > 0) call record_places(run%model, run%record%press(:, :, run%record%points))
    end subroutine record_state
 
    !> Forces of the joints at the last evaluation, and their energy losses up to then
@@ -308,6 +311,34 @@ contains
          end associate
       end do
    end subroutine record_joints
+
+   !> Forces of the contacts as drawn at the last evaluation, and their places
+   pure subroutine record_places(model, press)
+      type(solid_model), intent(in) :: model
+      real(wp), intent(out) :: press(:, :)          !! see dem_places
+      real(wp) :: normal(3), gap, at(3)
+      integer :: k, n, who(2)
+      press = 0.0_wp
+      do k = 1, model%pairs
+         associate (pair => model%pair(k))
+            if (pair%joint == 0) cycle
+            who = model%set%parts(pair%part)%owner
+            associate (low => model%set%item(minval(who)))
+               do n = 1, pair%points
+                  associate (point => pair%point(n))
+                     if (.not. any(abs(point%force) > 0.0_wp)) cycle
+                     call measure_feature(point%what, model%set%item(who(1)), model%set%item(who(2)), normal, gap, at)
+                     at = at - low%x
+                     ! The forces of points are those on the second body.
+                     call add_force(model%places, pair%joint, matmul(at, low%turn), matmul(normal, low%turn), &
+                        merge(-point%force, point%force, who(1) < who(2)), &
+                        dot_product(point%force - point%dash, normal), press)
+                  end associate
+               end do
+            end associate
+         end associate
+      end do
+   end subroutine record_places
 
    function list_sizes(run) result(told)
       class(solid_simulation), intent(in) :: run

@@ -16,6 +16,7 @@ module rocking_response
    use common_status, only : status_ok, status_cancelled, status_out_of_memory, status_too_many_steps, &
       status_step_too_small
    use rocking_crossings, only : impact_fraction, turning_fraction, crossing_fraction
+   use rocking_demand, only : demand_at, look_within, look_at_rest
    use rocking_equation, only : equation_of_motion, attempt_step, series_factor, polish_impact
    use rocking_record, only : cannot_reach, energy_of, response_history
    use rocking_rocker, only : rocker, side_index
@@ -97,9 +98,6 @@ module rocking_response
       procedure :: note_turning
       procedure :: leave_mode
       procedure :: hold_at_rest
-      procedure :: check_demand
-      procedure :: look_within
-      procedure :: look_at_rest
    end type run_state
 
    integer, parameter :: poll_every = 2000
@@ -248,7 +246,7 @@ contains
       ! Long sines are searched in pieces, so that the loop answers a request to stop.
       window = min(t_next, state%t + 64.0_wp * state%problem%ground%shortest_period(state%problem%segment))
       call find_uplift(state%problem, state%t, window, lifts, found_side)
-      if (allocated(state%problem%body%watch)) call state%look_at_rest(lifts)
+      if (allocated(state%problem%body%watch)) call look_at_rest(state%problem, state%t, lifts, state%answer%joints)
       if (found_side == 0) then
          state%t = window
          if (associated(state%history)) call state%history%fill_rest(state%problem, state%t)
@@ -264,7 +262,7 @@ contains
       state%q = 0.0_wp
       state%v = 0.0_wp
       state%renew = .true.
-      call state%check_demand()
+      call demand_at(state%problem, state%t, state%q, state%v, state%answer%joints)
       state%answer%half_cycles = state%answer%half_cycles + 1
       if (associated(state%history)) call state%history%note_event(event_uplift, state%t, real(found_side, wp))
    end subroutine wait_for_uplift
@@ -394,7 +392,7 @@ contains
       call polish_impact(state%problem, state%q, state%v, state%a, state%atol_q, state%atol_v, &
          state%options%tolerance, fraction, state%step)
       call state%note_turning()
-      call state%look_within(1.0_wp)
+      call look_within(state%problem, state%step, state%look_every, 1.0_wp, state%answer%joints)
       if (associated(state%history)) call state%history%cover_step(state%problem, state%step, 1.0_wp)
       state%from_rest = .false.
       state%t = state%step%t + state%step%h
@@ -427,7 +425,7 @@ contains
          if (state%over) return
       else
          state%answer%half_cycles = state%answer%half_cycles + 1
-         call state%check_demand()
+         call demand_at(state%problem, state%t, state%q, state%v, state%answer%joints)
       end if
       state%renew = .true.
       call state%advance_segment()
@@ -439,7 +437,7 @@ contains
       real(wp), intent(in) :: fraction  !! of the step
       real(wp) :: limit
       limit = state%problem%body%limit(side_index(state%problem%side))
-      call state%look_within(fraction)
+      call look_within(state%problem, state%step, state%look_every, fraction, state%answer%joints)
       if (associated(state%history)) call state%history%cover_step(state%problem, state%step, fraction)
       state%t = state%step%t + fraction * state%step%h
       state%answer%outcome = outcome_collapse
@@ -457,7 +455,7 @@ contains
       real(wp), intent(in) :: t_next
       logical :: was_quiet, whole
       call state%note_turning()
-      call state%look_within(1.0_wp)
+      call look_within(state%problem, state%step, state%look_every, 1.0_wp, state%answer%joints)
       if (associated(state%history)) call state%history%cover_step(state%problem, state%step, 1.0_wp)
       state%from_rest = .false.
       whole = state%step%h >= t_next - state%t
@@ -471,7 +469,7 @@ contains
          state%q, state%v, state%problem%memory)
       was_quiet = state%quiet()
       call state%advance_segment()
-      if (state%renew) call state%check_demand()  ! the ground jumps here
+      if (state%renew) call demand_at(state%problem, state%t, state%q, state%v, state%answer%joints)  ! the ground jumps here
       if (.not. (state%options%stop_when_safe .and. was_quiet .and. state%v <= 0.0_wp)) return
       if (state%q >= state%problem%body%critical(side_index(state%problem%side))) return
       state%over = cannot_reach(state%problem, state%q, state%v, 1.0_wp)
@@ -581,154 +579,6 @@ contains
          state%problem%rest_hold(i) = state%problem%body%held%moment(i, 0.0_wp, 0.0_wp, state%problem%memory)
       end do
    end subroutine hold_at_rest
-
-   !> What the joints must carry in this state
-   subroutine check_demand(state)
-      class(run_state), intent(inout) :: state
-      if (allocated(state%problem%body%watch)) call demand_at(state%problem, state%t, state%q, state%v, state%answer%joints)
-   end subroutine check_demand
-
-   !> What they must carry within the first part of the last step, and when a condition fails there first
-   subroutine look_within(state, part)
-      class(run_state), intent(inout) :: state
-      real(wp), intent(in) :: part  !! of the step
-      real(wp) :: x, last
-      integer :: k, count
-      logical :: slipped, left
-      if (.not. allocated(state%problem%body%watch)) return
-      count = max(1, min(1000, ceiling(part * state%step%h / state%look_every)))
-      if (count > 1) then
-         if (calm_step(state%problem, state%step, part, state%answer%joints)) return
-      end if
-      x = 0.0_wp
-      associate (found => state%answer%joints)
-         do k = 1, count
-            last = x
-            x = part * real(k, wp) / real(count, wp)
-            slipped = found%slips_at >= 0.0_wp
-            left = found%leaves_at >= 0.0_wp
-            call demand_within(state%problem, state%step, x, found)
-            if (found%slips_at >= 0.0_wp .and. .not. slipped) then
-              call first_failure(state%problem, state%step, last, x, .true., found%slips_at, found%slips)
-            end if
-            if (found%leaves_at >= 0.0_wp .and. .not. left) then
-              call first_failure(state%problem, state%step, last, x, .false., found%leaves_at, found%leaves)
-            end if
-         end do
-      end associate
-   end subroutine look_within
-
-   !> Do the bounds of the joints show that nothing within the first part of a step changes a demand?
-   pure function calm_step(problem, step, part, demand) result(answer)
-      type(equation_of_motion), intent(in) :: problem
-      type(dense_step), intent(in) :: step
-      real(wp), intent(in) :: part
-      type(joint_demand), intent(in) :: demand
-      logical :: answer
-      real(wp) :: q(2), v(2), horizontal(2), vertical(2)
-      answer = .false.
-      if (problem%ground%has_harmonics()) return
-      call problem%ground%value_at(problem%segment, step%t, horizontal(1), vertical(1))
-      call problem%ground%value_at(problem%segment, step%t + part * step%h, horizontal(2), vertical(2))
-      ! no polynomial leaves its first value by more than the sum of the sizes of its other coefficients
-      v = step%cv(0) + sum(abs(step%cv(1:step%degree))) * [-1.0_wp, 1.0_wp]
-      if (v(1) * v(2) > 0.0_wp) then
-         q = [min(step%cq(0), step%q), max(step%cq(0), step%q)]
-         v = [minval(abs(v)), maxval(abs(v))]
-      else
-         q = step%cq(0) + sum(abs(step%cq(1:step%degree))) * [-1.0_wp, 1.0_wp]
-         v = [0.0_wp, maxval(abs(v))]
-      end if
-      answer = problem%body%watch%changes_nothing_between(side_index(problem%side), q, v, horizontal, vertical, demand)
-   end function calm_step
-
-   !> Time and joint at which a condition fails first between two fractions of a step: it holds at the first, and fails at the last
-   subroutine first_failure(problem, step, first, last, slides, time, joint)
-      type(equation_of_motion), intent(in) :: problem
-      type(dense_step), intent(in) :: step
-      real(wp), intent(in) :: first, last
-      logical, intent(in) :: slides       !! friction; else the thrust line
-      real(wp), intent(out) :: time       !! [s]
-      integer, intent(inout) :: joint     !! as it fails at the last fraction
-      type(joint_demand) :: probe
-      real(wp) :: low, high, middle
-      integer :: n
-      low = first
-      high = last
-      do n = 1, 40
-         middle = 0.5_wp * (low + high)
-         if ((high - low) * step%h <= 4.0_wp * spacing(step%t + step%h)) exit
-         probe = joint_demand()
-         call demand_within(problem, step, middle, probe)
-         if (merge(probe%slips_at, probe%leaves_at, slides) >= 0.0_wp) then
-            high = middle
-            joint = merge(probe%slips, probe%leaves, slides)
-         else
-            low = middle
-         end if
-      end do
-      time = step%t + high * step%h
-   end subroutine first_failure
-
-   !> What the joints must carry at a fraction of a step
-   subroutine demand_within(problem, step, x, demand)
-      type(equation_of_motion), intent(in) :: problem
-      type(dense_step), intent(in) :: step
-      real(wp), intent(in) :: x
-      type(joint_demand), intent(inout) :: demand
-      call demand_at(problem, step%t + x * step%h, step%coordinate(x), step%rate(x), demand)
-   end subroutine demand_within
-
-   !> What the joints of a watched structure must carry at a time of the present segment
-   subroutine demand_at(problem, t, q, v, demand)
-      type(equation_of_motion), intent(in) :: problem
-      real(wp), intent(in) :: t  !! [s]
-      real(wp), intent(in) :: q  !! rotation [rad]
-      real(wp), intent(in) :: v  !! its rate [rad/s]
-      type(joint_demand), intent(inout) :: demand
-      real(wp) :: horizontal, vertical
-      integer :: i
-      i = side_index(problem%side)
-      call problem%ground%value_at(problem%segment, t, horizontal, vertical)
-      if (problem%body%watch%restraints == 0) then
-         call problem%body%watch%check_demand(i, q, v, horizontal, vertical, [real(wp) ::], t, demand)
-         return
-      end if
-      block
-         real(wp) :: pull(problem%body%watch%restraints)
-         call problem%body%held%find_forces(i, q, v, problem%memory, pull)
-         call problem%body%watch%check_demand(i, q, v, horizontal, vertical, pull, t, demand)
-      end block
-   end subroutine demand_at
-
-   !> Does the resting structure slide, or open elsewhere, before a time? It does so as another mechanism would rise
-   subroutine look_at_rest(state, until)
-      class(run_state), intent(inout) :: state
-      real(wp), intent(in) :: until  !! [s]
-      associate (watch => state%problem%body%watch, found => state%answer%joints)
-         call first_above(state%problem, state%t, until, watch%slides, found%slips_at)
-         call first_above(state%problem, state%t, until, watch%opens, found%leaves_at)
-      end associate
-   end subroutine look_at_rest
-
-   !> First time at which the ground of the present segment exceeds an acceleration of a side, where none was found before
-   subroutine first_above(problem, from, until, limit, time)
-      type(equation_of_motion), intent(in) :: problem
-      real(wp), intent(in) :: from, until  !! [s]
-      real(wp), intent(in) :: limit(2)     !! of the sides +1 and -1 [m/s^2]
-      real(wp), intent(inout) :: time      !! below 0: not found [s]
-      type(equation_of_motion) :: other
-      real(wp) :: when
-      integer :: side
-      if (all(limit >= huge(1.0_wp)) .or. time >= 0.0_wp) return
-      other%body => problem%body
-      other%ground = problem%ground
-      other%segment = problem%segment
-      other%rest_dv = limit
-      other%rest_dh = 1.0_wp
-      call find_uplift(other, from, until, when, side)
-      if (side /= 0) time = when
-   end subroutine first_above
 
    !> Keep the rotation of greatest size
    subroutine note_peak(state, rotation)

@@ -136,7 +136,11 @@ contains
          end do
          group%diagonal(:, 1, e) = geometry%corner(:, 3) - geometry%corner(:, 1)
          group%diagonal(:, 2, e) = geometry%corner(:, 2) - geometry%corner(:, 1)
-         if (n == 4) group%diagonal(:, 2, e) = geometry%corner(:, 4) - geometry%corner(:, 2)
+         group%side(:, e) = 0.0_wp
+         if (n == 4) then
+            group%side(:, e) = group%diagonal(:, 2, e)
+            group%diagonal(:, 2, e) = geometry%corner(:, 4) - geometry%corner(:, 2)
+         end if
          p = (e - 1) * group%per
          do k = 1, group%rule%points
             group%slope(:, :, k, e) = geometry%gradient(:, 1:n, k)

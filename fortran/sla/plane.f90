@@ -80,7 +80,11 @@ contains
          if (selective) group%shear_gradient(:, :, e) = middle(:, 1:group%rule%nodes)
          group%diagonal(:, 1, e) = xy(:, connect(3, e)) - xy(:, connect(1, e))
          group%diagonal(:, 2, e) = xy(:, connect(2, e)) - xy(:, connect(1, e))
-         if (.not. is_triangle(group)) group%diagonal(:, 2, e) = xy(:, connect(4, e)) - xy(:, connect(2, e))
+         group%side(:, e) = 0.0_wp
+         if (.not. is_triangle(group)) then
+            group%side(:, e) = group%diagonal(:, 2, e)
+            group%diagonal(:, 2, e) = xy(:, connect(4, e)) - xy(:, connect(2, e))
+         end if
          group%weight(p + 1:p + per) = area(1:per) * property(1, e)
       end do
       call points_ready(group)

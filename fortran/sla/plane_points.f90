@@ -59,6 +59,7 @@ module sla_plane_points
       integer(c_int), allocatable :: table(:)            !! tension teeth, 0 none
       integer(c_int), allocatable :: ladder(:, :)        !! (2, elements) tables of narrowest and widest band, 0 none
       real(wp), allocatable :: diagonal(:, :, :)         !! (2, 2, elements), two sides of triangles [m]
+      real(wp), allocatable :: side(:, :)                !! (2, elements) from the first corner to the second; 0 of triangles [m]
       integer(c_int), allocatable :: crush_table(:)      !! compression teeth, 0 none
       real(wp), allocatable :: lateral(:)                !! compressive strength that reduces ft, 0 none [Pa]
       real(wp), allocatable :: confinement(:)            !! growth of the compressive strength per lateral pressure
@@ -113,7 +114,7 @@ module sla_plane_points
 contains
 
    !> Material and damage, which is none, of a group that knows its elements and the points of each; its maker sets
-   !> `weight` and `diagonal`, then calls points_ready
+   !> `weight`, `diagonal` and `side`, then calls points_ready
    subroutine points_new(group, property, choice, teeth, options, status)
       class(plane_points), intent(inout) :: group
       !> (14, elements) thickness [m], Young's modulus [Pa], Poisson's ratio, lateral strength [Pa], angle of the only
@@ -134,8 +135,8 @@ contains
       call tooth_tables_copy(teeth, group%teeth, status)
       if (status /= status_ok) return
       allocate (group%weight(np), group%young(ne), group%nu(ne), group%table(ne), group%crush_table(ne), &
-         group%lateral(ne), group%axis(ne), group%ladder(2, ne), group%diagonal(2, 2, ne), group%confinement(ne), &
-         group%bed(ne), group%pair(2, merge(np, 0, any(property(8, :) > 0.0_wp))), group%turn(2, np), &
+         group%lateral(ne), group%axis(ne), group%ladder(2, ne), group%diagonal(2, 2, ne), group%side(2, ne), &
+         group%confinement(ne), group%bed(ne), group%pair(2, merge(np, 0, any(property(8, :) > 0.0_wp))), group%turn(2, np), &
          group%cracked(np), group%tooth(2, np), group%crush(2, np), group%shut(2, np), group%changes(2, np), &
          group%stiff(4, np), group%limit(4, np), stat=info)
       if (info /= 0) status = status_out_of_memory
@@ -598,17 +599,17 @@ contains
       class(plane_points), intent(in) :: group
       integer, intent(in) :: e
       real(wp), intent(in) :: n(2)
-      real(wp) :: width, a(2), b(2), along(2), across(2)
+      real(wp) :: width, a(2), b(2), along(2), corner(4)
       width = group%bed(e)%width
       if (width > 0.0_wp) return
       a = group%diagonal(:, 1, e)
       b = group%diagonal(:, 2, e)
       along = [a(2) * n(1) - a(1) * n(2), b(2) * n(1) - b(1) * n(2)]
-      across = [dot_product(a, n), dot_product(b, n)]
-      if (is_triangle(group)) then
-         width = max(0.0_wp, maxval(across)) - min(0.0_wp, minval(across))
-      else if (group%options%extent) then
-         width = maxval(abs(across))
+      if (is_triangle(group) .or. group%options%extent) then
+         associate (side => group%side(:, e))
+            corner = [0.0_wp, dot_product(side, n), dot_product(a, n), dot_product(side + b, n)]
+         end associate
+         width = maxval(corner) - minval(corner)
       else
          width = abs(a(1) * b(2) - a(2) * b(1)) / sum(abs(along))
       end if

@@ -208,9 +208,17 @@ ANALYSES: dict[str, AnalysisKind] = {
     "thrust-network": _analysis(
         "limit", "ThrustNetwork", "thrust_network", "limit.network:draw", "others", "vault/thrust-network", results="networks:ThrustNetwork"
     ),
-    "sweep": _analysis("limit", "Sweep", "sweep", "limit.sweep:draw_sweep", "sweep", "vault/vezelay-sweep"),
-    "survey": _analysis("limit", "Survey", "survey", "limit.sweep:draw_survey", "survey", "limit/survey"),
-    "imperfections": _analysis("limit", "Imperfections", "imperfections", "limit.sweep:draw_imperfections", "others", "limit/church"),
+    "sweep": _analysis("limit", "Sweep", "sweep", "limit.sweep:draw_sweep", "sweep", "vault/vezelay-sweep", results="sweeps:Sweep"),
+    "survey": _analysis("limit", "Survey", "survey", "limit.sweep:draw_survey", "survey", "limit/survey", results="sweeps:Survey"),
+    "imperfections": _analysis(
+        "limit",
+        "Imperfections",
+        "imperfections",
+        "limit.sweep:draw_imperfections",
+        "others",
+        "limit/church",
+        results="sweeps:Imperfections",
+    ),
     "supports": _analysis("limit", "MovingSupports", "supports", "limit.supports:draw", "supports", "limit/oppenheim"),
     "moving-load": _analysis("limit", "MovingLoad", "moving_load", "limit.moving_load:draw", "moving_load", "limit/oppenheim"),
     "rocking": _analysis("rocking", "Rocking", "driver", "arch:draw_rocking", "rocking", "arch/oppenheim", ("rocking",)),

@@ -15,6 +15,7 @@ from relations import EARTHQUAKES, RIGID, SLOW, ok, relation
 from extrados.analyses.left_out import left_out
 from extrados.decks.reader import make_deck
 from extrados.model.geometry.convex import overlap_depth
+from extrados.model.properties import Material
 from extrados.views.rigid import rigid_bodies
 
 LEFT_OUT = st.sampled_from(
@@ -198,3 +199,82 @@ def axes_of_arrays_agree(deck: Deck, kind: str, table: Deck, within: float) -> N
         for axis, length in zip(array.dims, shape, strict=True):
             other, size = lengths.setdefault(axis, (name, length))
             must(size == length, f"{axis}: {length} in {name}, {size} in {other}")
+
+
+DEEP = st.tuples(decks("block", "column", "brickwork", "frame", "stack"), number(0.1, 3.0))  # whose edges are no arcs
+
+
+@relation("tilt", DEEP, 1e-9, share=3.0)
+def masses_are_those_of_the_outlines(deck: Deck, depth: float, within: float) -> None:
+    """The mass of each block is its density times its outline times the depth of the deck, and its centroid that of the outline."""
+    stones = building(changed(deck, structure={"depth": depth}, material={"density": 1700.0})).blocks()
+    near("depth", stones.depth, depth, within)
+    for k, outline in enumerate(map(np.asarray, stones.outlines)):
+        arm = outline - outline[0]
+        after = np.roll(arm, -1, axis=0)
+        cross = arm[:, 0] * after[:, 1] - arm[:, 1] * after[:, 0]
+        near("mass", stones.mass[k], 1700.0 * depth * abs(signed_area(outline)), within)
+        middle = outline[0] + (cross[:, None] * (arm + after)).sum(axis=0) / (3.0 * cross.sum())
+        near("centroid", stones.centroid[k], middle, within, float(np.ptp(outline)))
+
+
+@st.composite
+def covered(draw: st.DrawFn) -> Deck:
+    """Symmetric bridges of one span below fill, by either rule of dispersal."""
+    deck = draw(decks("bridge", friction=number(0.6, 0.9, 4)))
+    structure = {**deck["structure"], "spans": deck["structure"]["spans"][:1]}
+    structure.pop("piers", None)
+    fill = {"cover": draw(number(0.1, 0.6)), "passive": 0.0}
+    if draw(st.booleans()):
+        fill["dispersal"] = "even"
+    return {**deck, "structure": {**structure, "fill": fill}}
+
+
+#: Length over which a load at a place acts on fill [m]
+FOOT = 0.3
+
+
+@relation("tilt", st.tuples(covered(), number(0.1, 0.9), number(0.4, 2.0), number(1e4, 1e5)), 1e-5)
+def stretches_of_load_on_fill(deck: Deck, share: float, length: float, force: float, within: float) -> None:
+    """A load at a place of the fill is one spread over the length of its contact; in a mirror a spread load is that of the other sense."""
+    ends = np.concatenate([np.array(block["points"])[:, 0] for block in drawn(deck)["structure"]["block"]])
+    middle, span = 0.5 * (ends.min() + ends.max()), float(np.ptp(ends))
+    off = (share - 0.5) * (span - length)
+
+    def pushed(x: float, over: float) -> np.ndarray:
+        stretch = {} if over == 0.0 else {"x_end": round(middle + x + 0.5 * over, 9)}
+        answer = ask(deck, "tilt", load=[{"x": round(middle + x - 0.5 * over, 9), "force": force, **stretch}])
+        ok(answer)
+        return answer.capacity
+
+    near("contact", pushed(off, 0.0), pushed(off, FOOT), within, 1e-3)
+    near("mirror", pushed(off, length), pushed(-off, length)[::-1], within, 1e-3)
+
+
+@relation("dem", st.tuples(decks("block", "column", friction=st.just(0.9)), number(1.5, 4.0)), 1e-9, share=0.5)
+def a_run_that_ends_by_collapse_has_passed_its_limit(deck: Deck, factor: float, within: float) -> None:
+    """Of a run that collapses, the greatest displacement is at least the limit, however seldom it is noted."""
+    shape = deck["structure"]
+    slender = shape["width"] / shape["height"]
+    motion = {"kind": "sine-pulse", "amplitude": f"{factor * slender:g} g", "period": 1.2}
+    keys = {**RIGID, "end_time": 4.0, "time_step": 2e-3, "output_step": 0.5, "perturbed": False}
+    answer = ask({**deck, "motion": motion}, "dem", **keys)
+    ok(answer)
+    r = answer.results
+    if r.outcome != "collapse":
+        reject()
+    at_most("limit", r.collapse_displacement_m, r.peak_displacement_m, within)
+
+
+@relation("tilt", st.tuples(number(1e5, 1e6), number(1e5, 1e6), number(1e-6, 0.1)), 0.0)
+def shear_strength_is_bounded_by_tension(across: float, along: float, more: float, within: float) -> None:
+    """A shear strength up to the root of the product of both tensile strengths is accepted, a greater one refused."""
+    most = (across * along) ** 0.5
+    given = {"tensile_strength": across, "tensile_strength_parallel": along, "fracture_energy": 50.0, "fracture_energy_parallel": 50.0}
+    Material.model_validate({**given, "shear_strength": most * (1.0 - 1e-10)})
+    try:
+        Material.model_validate({**given, "shear_strength": most * (1.0 + more)})
+    except ValueError as error:
+        must("shear_strength" in str(error), str(error))
+    else:
+        must(False, f"shear strength {1.0 + more} of the greatest is accepted")

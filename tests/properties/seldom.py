@@ -120,15 +120,23 @@ def loads_beside_the_structure(deck: Deck, away: float, left: bool, within: floa
 
 @relation(
     "tilt sweep",
-    st.tuples(st.sampled_from(["dejong-a", "dejong-b"]), number(3.9, 6.5), number(1.05, 1.4), st.sampled_from([8, 12])),
+    st.tuples(
+        st.sampled_from(["dejong-a", "dejong-b"]),
+        st.tuples(number(3.9, 6.5), st.just(0.8))  # slender ones do not stand with a crack
+        | st.tuples(number(14.0, 24.0), st.just(0.8))
+        | st.tuples(number(20.0, 26.0), st.just(0.2)),  # the vault slides before the buttress cracks
+        number(1.05, 1.4),
+        st.sampled_from([8, 12]),
+    ),
     1e-5,
     share=0.5,
 )
-def cracked_buttresses_are_cut_blocks(preset: str, width: float, more: float, voussoirs: int, within: float) -> None:
+def cracked_buttresses_are_cut_blocks(preset: str, wide: tuple[float, float], more: float, voussoirs: int, within: float) -> None:
     """The capacity with a cracked buttress is that of the same blocks with the buttress cut along the crack; a sweep has both, and the buttress alone."""
+    width, friction = wide
     deck: Deck = {
         "structure": {"kind": "vault", "preset": preset, "buttress_width": width, "voussoirs": voussoirs},
-        "joints": {"friction": 0.8},
+        "joints": {"friction": friction},
     }
     answer = ask(deck, "tilt", fracture=True)
     ok(answer)
@@ -149,7 +157,7 @@ def cracked_buttresses_are_cut_blocks(preset: str, width: float, more: float, vo
         must("cannot stand" in answer.warnings, answer.warnings)
         return
     if not f.cracks:
-        near("without a crack", f.collapse_acceleration_g, r.collapse_acceleration_g, within)
+        near("without a crack", [f.collapse_acceleration_g, f.ratio], [r.collapse_acceleration_g, 1.0], within)
         return
     near("tilt of the ground", f.tilt_angle_deg, math.degrees(math.atan(f.collapse_acceleration_g)), within)
     near("ratio", f.ratio, f.collapse_acceleration_g / r.collapse_acceleration_g, within)

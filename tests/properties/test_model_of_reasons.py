@@ -227,6 +227,22 @@ def test_each_reason_follows_from_its_probe(facts: Facts) -> None:
 
 
 @QUICK
+@given(TABLES, st.lists(st.booleans(), min_size=9, max_size=9))
+def test_an_open_outcome_is_explained_by_its_violated_assumption(table: list[StrategyVerdict], broken: list[bool]) -> None:
+    """Each strategy whose outcome is open by a violated assumption explains its own pairs with a decided one, and no others."""
+    made = [r.model_copy(update={"violated": ["It slides."] if bad else []}) for r, bad in zip(table, broken, strict=False)]
+    facts = Facts(CONTEXT.building, CONTEXT.motion, CONTEXT.motion.peak / 9.80665, {r.strategy: r for r in made}, {}, 1.2)
+    told = {(one.text.split(" is open")[0], tuple(map(tuple, one.explains))) for one in reasons_of_motion.violated(facts, facts.pairs())}
+    decided = {r.strategy for r in made if r.status == "ok" and r.outcome in ("stands", "collapses", "cannot-stand")}
+    want = set()
+    for row in made:
+        pairs = tuple(p for p in facts.pairs() if row.strategy in p and set(p) & decided)
+        if row.status == "ok" and row.outcome == "open" and row.violated and pairs:
+            want.add((f"The outcome by {row.label}", pairs))
+    assert told == want
+
+
+@QUICK
 @given(
     st.lists(rows(), min_size=3, max_size=7, unique_by=lambda r: r.strategy),
     rows(),

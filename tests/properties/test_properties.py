@@ -154,9 +154,12 @@ def random_cases(relation: Relation, count: int) -> None:
         BROKEN.append(relation.name)
         shown = text_of(last[0]) if last else ""
         raise AssertionError(f"{relation.name}: {error}\n\nThe smallest case:\n{shown}") from error
-    if ASKED.get(relation.name, 0) == before:  # the simplest, which is left out, counts for hypothesis
-        BROKEN.append(relation.name)
-        raise AssertionError(f"{relation.name}: no case gives anything to compare, as {text_of(last[0])}")
+    if ASKED.get(relation.name, 0) == before:  # the simplest, which is left out, counts for hypothesis, and may be the only one
+        try:
+            checked(relation, last[0])
+        except UnsatisfiedAssumption as error:
+            BROKEN.append(relation.name)
+            raise AssertionError(f"{relation.name}: no case gives anything to compare, as {text_of(last[0])}") from error
 
 
 def most_of(relation: Relation) -> int:
@@ -229,6 +232,7 @@ def test_a_whole_run_runs_enough_buildings() -> None:
     assert sum(most_of(r) for r in RELATIONS.values() if not r.awaits) >= WHOLE
 
 
+@pytest.mark.skipif("EXTRADOS_FAULTS" in os.environ, reason="with a fault planted the smallest case is not looked for")
 def test_a_broken_relation_shows_the_smallest_deck() -> None:
     """The machine itself: a relation that no building keeps."""
 

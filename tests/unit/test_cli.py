@@ -98,6 +98,14 @@ def test_exit_codes(tmp_path) -> None:
     assert missing.returncode == 2 and "no such file" in missing.stderr
 
 
+def test_a_check_loads_no_library_that_it_does_not_call(tmp_path) -> None:
+    """scipy.signal alone takes longer to load than a deck takes to check."""
+    words = [sys.executable, "-X", "importtime", "-m", "extrados", "check", deck(tmp_path, ARCH + '[[analysis]]\nkind = "tilt"\n')]
+    run = subprocess.run(words, capture_output=True, text=True, timeout=100)
+    loaded = {line.rsplit("|", 1)[-1].strip() for line in run.stderr.splitlines()}
+    assert run.returncode == 0 and "numpy" in loaded and not loaded & {"scipy.signal", "scipy.stats", "matplotlib"}
+
+
 def test_bad_record_is_refused(tmp_path) -> None:
     (tmp_path / "r.at2").write_text("NPTS= 5, DT= 0.01\n0.1 nan 0.2 0.3 0.1\n")
     text = ARCH + '[motion]\nkind = "record"\nfile = "r.at2"\n[analysis]\nkind = "rocking"\n'

@@ -96,6 +96,81 @@ def test_an_arch_at_rest_has_an_admissible_line_in_equilibrium(tmp_path) -> None
     assert least < horizontal.mean() < most
 
 
-def test_rigid_contacts_refuse_the_place_of_a_force(tmp_path) -> None:
-    with pytest.raises(Exception, match="rigid contacts do not determine"):
-        found(tmp_path, '[structure]\nkind = "block"\nwidth = 1\nheight = 2\n' + STILL.format(end=0.1) + 'solver = "nonsmooth"\n')
+RIGID = 'solver = "nonsmooth"\n'
+
+
+@pytest.mark.parametrize("direction", ["", "direction = 0.0\n"])
+def test_a_block_on_rigid_contacts_under_its_weight_and_a_moment(direction: str, tmp_path) -> None:
+    """The forces of a single block are unique: W/A (1 +- 6 e/B), e = a/g h/2, and the place is e from the middle."""
+    width, height, share = 1.0, 2.0, 0.12
+    text = f'[structure]\nkind = "block"\nwidth = {width}\nheight = {height}\n[material]\ndensity = 2000\n'
+    text += f'[joints]\nfriction = 1.0\n[motion]\nkind = "constant"\namplitude = "{share} g"\nduration = 9\n'
+    run = found(tmp_path, text + STILL.format(end=0.3) + RIGID + direction)
+    mean, e = 2000.0 * GRAVITY * height, share * height / 2.0
+    last = run.array("dem", "edge_stress")[-1].ravel()
+    assert last.max() == pytest.approx(mean * (1.0 + 6.0 * e / width), rel=1e-3)
+    assert last.min() == pytest.approx(mean * (1.0 - 6.0 * e / width), rel=1e-3)
+    assert run.array("dem", "thrust_force")[-1, 0][[0, -1]] == pytest.approx([share * mean * width, mean * width], rel=1e-3)
+    assert run.array("dem", "thrust_place")[-1, 0, 0] == pytest.approx(-e, rel=1e-3)
+    assert not any("not unique" in text for text in run.analyses[0]["warnings"])
+
+
+def test_a_leaning_pier_on_rigid_contacts(tmp_path) -> None:
+    """The eccentricity of the weight at the base, 0.15 m in a width of 1 m, and the forces in its joints are those of statics."""
+    stones = [f"[[{x:g}, {y}], [{1 + x:g}, {y}], [{1.1 + x:g}, {y + 1}], [{0.1 + x:g}, {y + 1}]]" for y, x in ((0, 0), (1, 0.1), (2, 0.2))]
+    text = (
+        '[structure]\nkind = "blocks"\nblock = [' + ",".join(f"{{ points = {one} }}" for one in stones) + "]\n[material]\ndensity = 2000\n"
+    )
+    run = found(tmp_path, text + STILL.format(end=0.1) + RIGID)
+    assert run["dem"]["edge_stress_at_rest_Pa"] == pytest.approx(2000.0 * GRAVITY * 3.0 * 1.9, rel=1e-3)
+    force, place = (run.array("dem", name)[-1] for name in ("thrust_force", "thrust_place"))
+    level = np.round(place[:, 1]).astype(int)
+    assert np.abs(force[:, 1]) == pytest.approx(2000.0 * GRAVITY * (3 - level), rel=1e-3)
+    assert place[:, 0] == pytest.approx(0.65 + 0.05 * level, rel=1e-3)
+
+
+def unbalanced(run, k: int, weight: float, centre: np.ndarray) -> tuple[float, float]:
+    """Force and moment about its centroid that a block of a weight [N] lacks for equilibrium at the end, in the plane of x and the height."""
+    force, place = (run.array("dem", name)[-1] for name in ("thrust_force", "thrust_place"))
+    sides = run.array("dem", "contact_block" if force.shape[1] == 3 else "joint_block")
+    way = np.where(sides[:, 0] == k, 1.0, np.where(sides[:, 1] == k, -1.0, 0.0))[:, None] * force
+    arm = np.nan_to_num(place - centre)
+    moment = (arm[:, 0] * way[:, -1] - arm[:, -1] * way[:, 0]).sum()
+    return float(np.hypot(way[:, 0].sum(), way[:, -1].sum() - weight)), float(abs(moment))
+
+
+@pytest.mark.parametrize("direction", ["", "direction = 0.0\n"])
+def test_an_arch_on_rigid_contacts_has_one_of_many_states(direction: str, tmp_path) -> None:
+    """Equilibrium of each voussoir, a thrust between the limits and near that of stiff springs, and a warning."""
+    text = '[structure]\nkind = "arch"\nradius = 10.0\nthickness = 1.5\nembrace = 157.5\nvoussoirs = 9\n'
+    run = found(tmp_path, text + STILL.format(end=0.05) + RIGID + direction + '[[analysis]]\nkind = "tilt"\n')
+    force = run.array("dem", "thrust_force")[-1]
+    weight = float(np.abs(run.array("dem", "reaction")[-1, -1])) / 9.0
+    for k in range(9):
+        if direction:
+            centre = run.array("dem", "solid_centroid")[k] + run.array("dem", "shift")[-1, k]
+        else:
+            centre = run.array("dem", "place")[-1, k, :2]
+        assert max(unbalanced(run, k, weight, centre)) < 1e-3 * weight
+    horizontal = np.abs(force[:, 0])
+    assert horizontal == pytest.approx(horizontal.mean(), rel=1e-4)
+    assert run["tilt"]["thrust_min_N"] < horizontal.mean() < run["tilt"]["thrust_max_N"]
+    assert horizontal.mean() == pytest.approx(185.0e3, rel=0.1)  # springs of 1e9 and 1e11 Pa/m
+    assert any(f"have {6 if direction else 3} unknowns more" in text for text in run.analyses[0]["warnings"])
+
+
+@pytest.mark.parametrize("solver", ["compliant", "nonsmooth"])
+@pytest.mark.parametrize("direction", ["", "direction = 0.0\n"])
+def test_joints_of_one_pair_and_of_a_stone_of_several_parts(solver: str, direction: str, tmp_path) -> None:
+    """A stone hooked over a step of another: its three joints balance its weight, and the one below both has its force in the middle."""
+    lower = "[[0, 0], [3, 0], [3, 1], [1.5, 1], [1.5, 1.5], [0, 1.5]]"
+    upper = "[[0, 1.5], [1.5, 1.5], [1.5, 1], [3, 1], [3, 2], [0, 2]]"
+    text = f'[structure]\nkind = "blocks"\nblock = [{{ points = {lower} }}, {{ points = {upper} }}]\n[material]\ndensity = 2000\n'
+    run = found(tmp_path, text + "[joints]\nnormal_stiffness = 1e9\n" + STILL.format(end=0.05) + f'solver = "{solver}"\n' + direction)
+    weight = 2000.0 * GRAVITY * 2.25
+    centre = np.array([(3.0 * 0.5 * 1.5 + 1.5 * 0.5 * 2.25) / 2.25, 0.0, (3.0 * 0.5 * 1.75 + 1.5 * 0.5 * 1.25) / 2.25])
+    assert max(unbalanced(run, 1, weight, centre if direction else centre[[0, 2]])) < 2e-3 * weight
+    sides = run.array("dem", "contact_block" if direction else "joint_block")
+    below = int(np.flatnonzero((sides == -1).any(axis=1))[0])
+    assert run.array("dem", "thrust_place")[-1, below, 0] == pytest.approx(1.5, abs=1e-3)
+    assert (np.sort(sides, axis=1) == [0, 1]).all(axis=1).sum() == 3

@@ -6,7 +6,7 @@ import pytest
 from extrados.core.frame import Frame, Link, MacroElement
 from extrados.decks.reader import DeckError, make_deck
 from extrados.model.errors import BadGeometry
-from extrados.model.structures.plan import Reinforcement
+from extrados.model.structures.plan_parts import Reinforcement
 from extrados.schema.constants import GRAVITY
 from extrados.views.frame.flanges import side_width
 from extrados.views.frame.options import FrameOptions

@@ -109,6 +109,9 @@ def test_sweep_through_impossible_geometry() -> None:
     thick = run(ARCH, kind="sweep", vary="thickness", values=[0.5, 1.5, 11.0, -1.0])
     reasons = {g["value"]: g["reason"] for g in thick["gaps"]}
     assert "greater than 0" in reasons[-1.0] and "not below the radius" in reasons[11.0] and "cannot stand" in reasons[0.5]
+    # Where the geometry ends no collapse under self-weight begins
+    (limit,) = thick["stable_limits"]
+    assert 0.5 < limit < 1.5 and thick.answer.count("begins or ends at") == 1 and not result["stable_limits"]
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,8 @@ from pydantic import ValidationError
 
 from extrados.model.errors import BadGeometry, NoView
 from extrados.model.properties import Material
-from extrados.model.structures.plan import Plan, meeting
+from extrados.model.structures.plan import Plan
+from extrados.model.structures.plan_parts import meeting
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 from extrados.views.shell.mesh import nodal_areas

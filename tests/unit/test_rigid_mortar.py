@@ -8,6 +8,7 @@ from dem_models import G, block_on_floor, constant, model, pieces, rectangle
 from test_dem3_core import DENSITY, doweled_cube, hanging, solids
 from test_dem3_nonsmooth import STILL, slope
 
+import extrados
 from extrados.core import dem, dem3, dem_run
 from extrados.core.ground import Ground, as_motion_set
 from extrados.model.geometry.solids.polyhedra import box
@@ -18,6 +19,13 @@ ANY = 1e9  # stiffness: rigid contacts do not require it
 
 def mortar(friction: float, cohesion: float, tension: float, stiffness: float = ANY) -> dem.Law:
     return dem.Law(stiffness, stiffness, friction, cohesion=cohesion, tension=tension, damping=2e-3 * ANY / stiffness)
+
+
+BLOCK = {
+    "structure": {"kind": "block", "width": 1.0, "height": 3.0},
+    "motion": {"kind": "step-pulse", "amplitude": "0.1 m/s^2", "duration": 0.01},
+}
+SHORT = {"kind": "dem", "end_time": 0.01, "perturbed": False}
 
 
 def rigid(end: float, output: float = 0.01, **keys: object) -> dem.Options:
@@ -184,3 +192,21 @@ def test_a_run_with_mortar_and_dowels_pauses_to_the_same_bits(monkeypatch: pytes
     for run in found[1:]:
         for name in ("place", "dowel_slip", "dowel_out"):
             assert (getattr(run, name) == getattr(found[0], name)).all()
+
+
+@pytest.mark.parametrize("solver", ["compliant", "nonsmooth"])
+@pytest.mark.parametrize(("tension", "less"), [(1.6e5, False), (1.7e5, True)])
+def test_tension_above_cohesion_over_friction_is_stated(solver: str, tension: float, less: bool) -> None:
+    """Coulomb's law lets no point bear more than c / mu: with either law of contact it breaks there."""
+    deck = BLOCK | {"joints": {"friction": 0.6, "cohesion": 1e5, "tension": tension}, "analysis": SHORT | {"solver": solver}}
+    found = extrados.run(deck).results[0]
+    assert found.status == "ok"
+    assert any("167 kPa instead of 170 kPa" in text for text in found.warnings) is less
+
+
+@pytest.mark.parametrize("way", [{}, {"direction": 30.0}])
+def test_mortar_that_cannot_slide_is_refused_on_rigid_contacts(way: dict[str, float]) -> None:
+    deck = BLOCK | {"joints": {"friction": "no-sliding", "cohesion": 1e5}, "analysis": SHORT | way | {"solver": "nonsmooth"}}
+    assert "cannot have mortar: give the coefficient" in extrados.run(deck).results[0].reason
+    del deck["joints"]["cohesion"]
+    assert extrados.run(deck).results[0].status == "ok"

@@ -67,6 +67,11 @@ class Swept:
     interrupted: bool = False
 
     @property
+    def status(self) -> str:
+        """The status of a result of these members."""
+        return "interrupted" if self.interrupted else "failed" if self.stopped else "ok"
+
+    @property
     def finished(self) -> int:
         """Number of members with rows."""
         return sum(rows for _, rows in self.parts)

@@ -127,5 +127,5 @@ def _known_to(name: str, asked: list[Analysis]) -> str:
     """Analyses that use a key, as words; not those of the deck, whose options or building keep them from it."""
     here = {options.kind for options in asked}
     tables = {kind: kinds.load(parts.table) for kind, parts in kinds.ANALYSES.items() if kind not in here}
-    able = [kind for kind, table in tables.items() if name in (*table.uses, *table.beside) and name not in table.method]
+    able = [kind for kind, table in tables.items() if name in (*table.uses, *table.beside)]
     return f"; {', '.join(able[:3])}{' and others' if len(able) > 3 else ''} can use it" if able else ""

@@ -47,8 +47,7 @@ class Analysis(Table):
     view: what it looks at, "blocks", "rocker" or "mesh", "" where it needs no building; structures: the only kinds
     it takes, None any that has the view. solid: whether it takes solids, where there is no plane section; shells: kinds without
     stones that it takes as shells. uses: properties of the building that its answer rests on, which every
-    answer tells; method: what the method itself fixes of them, whatever the deck says; starter_structure,
-    starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. considers: what of
+    answer tells; starter_structure, starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. considers: what of
     Building.special_keys it takes into account; one that looks at a building with more is refused. beside: what
     it looks at, or refuses, beside `uses`, without telling it.
     """
@@ -59,7 +58,6 @@ class Analysis(Table):
     solid: ClassVar[bool] = False
     shells: ClassVar[tuple[str, ...]] = ()
     uses: ClassVar[tuple[str, ...]] = ()
-    method: ClassVar[dict[str, str]] = {}
     needs_motion: ClassVar[bool] = False
     considers: ClassVar[tuple[str, ...]] = ()
     beside: ClassVar[tuple[str, ...]] = ()
@@ -68,7 +66,7 @@ class Analysis(Table):
 
     def rests_on(self, building: "Building") -> dict[str, str | None]:
         """The properties of this building that its answer rests on, with what the method fixes of them, else None."""
-        return {key: self.method.get(key) for key in self.uses}
+        return dict.fromkeys(self.uses)
 
     def reckons_with(self, building: "Building") -> set[str]:
         """The keys of [material], [joints], [supports] and [initial] of which another value may change the answer for this

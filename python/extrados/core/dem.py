@@ -7,7 +7,7 @@ import numpy as np
 
 from extrados import _core
 from extrados.core.calls import indices, integers, real
-from extrados.core.dem_run import STILL, BodyModel, FoundRun, Law, RunOptions, SupportMove, Ties
+from extrados.core.dem_run import STILL, BodyModel, DrawnContacts, FoundRun, Law, RunOptions, SupportMove, Ties
 from extrados.core.errors import check
 from extrados.core.ground import Ground, as_motion_set
 from extrados.schema.constants import GRAVITY
@@ -20,7 +20,8 @@ class Bodies:
     centroid (n, 2) [m]; mass (n) [kg], 0 for a support; inertia (n) [kg m^2]. Part k is the convex polygon
     `parts[k]` (vertices, 2) [m], counter-clockwise, of body owner[k]; outer[k] tells for each of its edges
     whether it lies on the outline of the body. joints: (body, body) -> index of its law; law 0 is that of
-    contacts that form later. depth out of plane [m].
+    contacts that form later. depth out of plane [m]. load (n, 4): constant force x, y [N], its moment about the centroid and the
+    sum of arm times force [N m]; the places of these forces rotate with the body, their directions do not.
     """
 
     centroid: np.ndarray
@@ -33,6 +34,8 @@ class Bodies:
     laws: list[Law]
     joints: dict[tuple[int, int], int] = field(default_factory=dict)
     ties: Ties | None = None
+    drawn: DrawnContacts | None = None
+    load: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -113,7 +116,10 @@ class Model(BodyModel[Run]):
                     real("rate", np.transpose(nothing if rate is None else rate), (3, n)),
                 )
                 check(status, "initial displacements")
+            if bodies.load is not None:
+                check(_core.api_dem.loads(self.handle, real("load", np.transpose(bodies.load), (4, n))), "constant loads")
             self._put_ties(bodies.ties, lambda place, body: place[:, :2] - bodies.centroid[body])
+            self._put_drawn(bodies.drawn, lambda place, body: place[:, :2] - bodies.centroid[body])
             self._put_moves(moves, _core.api_dem.moves)
             self._put_surroundings()
             self._put_options(settle=shift is None and rate is None)
@@ -142,6 +148,9 @@ class Model(BodyModel[Run]):
             law = indices("joints", [law for *_, law in listed], len(bodies.laws), (None,))
             check(_core.api_dem.joints(self.handle, joints, law), "joints")
             self._joints = np.array([pair for *pair, _ in listed])
+
+    def _drawn_arm(self, arm: np.ndarray) -> np.ndarray:
+        return arm[..., :2]
 
     def _put_surroundings(self) -> None:
         o = self.options

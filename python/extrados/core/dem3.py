@@ -7,7 +7,7 @@ import numpy as np
 
 from extrados import _core
 from extrados.core.calls import indices, integers, real
-from extrados.core.dem_run import STILL, BodyModel, FoundRun, Law, RunOptions, SupportMove, Ties
+from extrados.core.dem_run import STILL, BodyModel, DrawnContacts, FoundRun, Law, RunOptions, SupportMove, Ties
 from extrados.core.errors import check
 from extrados.core.ground import Ground, as_motion_set
 from extrados.schema.constants import GRAVITY
@@ -54,6 +54,7 @@ class Solids:
     joints: dict[tuple[int, int], int] = field(default_factory=dict)
     dowels: Dowels | None = None
     ties: Ties | None = None
+    drawn: DrawnContacts | None = None
 
 
 @dataclass(frozen=True)
@@ -128,7 +129,12 @@ class Model(BodyModel[Run]):
             self._joints = joints[:2].T
             self._put_moves(moves, _core.api_dem3.moves)
             self._put_dowels(solids.dowels)
-            self._put_ties(solids.ties, lambda place, body: np.einsum("ni,nij->nj", place - solids.centroid[body], axes[body]))
+
+            def in_body(place: np.ndarray, body: np.ndarray) -> np.ndarray:
+                return np.asarray(np.einsum("ni,nij->nj", place - solids.centroid[body], axes[body]))
+
+            self._put_ties(solids.ties, in_body)
+            self._put_drawn(solids.drawn, in_body)
             status = _core.api_dem3.surroundings(
                 self.handle,
                 real("gravity", options.gravity, (3,)),
@@ -160,6 +166,10 @@ class Model(BodyModel[Run]):
             real("values", np.array(bounded), (4, n)),
         )
         check(status, "dowels")
+
+    def _drawn_arm(self, arm: np.ndarray) -> np.ndarray:
+        order = np.argsort(self._drawn)
+        return np.asarray(np.einsum("nij,tnj->tni", self._axes[self._below[order]], arm))
 
     def _last_run(self, interrupted: bool) -> Run:
         recorded = self._recorded(interrupted)

@@ -163,6 +163,19 @@ class Ties:
         return np.array(found)
 
 
+@dataclass(frozen=True)
+class DrawnContacts:
+    """Contacts as drawn whose forces are recorded with their places (fortran/dem/places.f90).
+
+    body (n, 2): two bodies that have a joint; corners: of each (k, 2 or 3) [m], in the plane both ends; normal (n, 2 or 3): unit vectors of
+    either sense.
+    """
+
+    body: np.ndarray
+    corners: list[np.ndarray]
+    normal: np.ndarray
+
+
 #: Before any run, and of springs
 NO_EFFORT = Effort(0, 0, 0, 0, 0.0, 0.0)
 
@@ -176,7 +189,9 @@ class FoundRun:
     nowhere over the total energy exchanged; bounces and airborne time [s] of each body; tension (t, ties) [N]; extreme (ties, 3):
     least and greatest tension of any step after settling [N], plastic elongation at the end [m]; effort: of rigid contacts. joint_body
     (joints, 2): bodies that touched as drawn, ascending; joint_force (t, joints, 2 or 3): force on the first of them [N];
-    joint_friction, joint_damping (t, joints): their losses so far by friction and in dashpots or impacts [J].
+    joint_friction, joint_damping (t, joints): their losses so far by friction and in dashpots or impacts [J]. Of DrawnContacts:
+    contact_force (t, n, 2 or 3): force on the body of the lower number [N]; contact_normal (t, n): sum of the compressive normal forces [N];
+    contact_arm (t, n, 2 or 3): from the centroid of that body as drawn to their centre [m], NaN without a force.
     """
 
     reason: str
@@ -203,6 +218,9 @@ class FoundRun:
     joint_force: np.ndarray
     joint_friction: np.ndarray
     joint_damping: np.ndarray
+    contact_force: np.ndarray
+    contact_normal: np.ndarray
+    contact_arm: np.ndarray
     interrupted: bool = False
 
 
@@ -221,6 +239,9 @@ class BodyModel(Owner, ABC, Generic[Found]):
     options: RunOptions
     _ties: int = 0
     _joints: np.ndarray = np.empty((0, 2), dtype=int)
+    #: Of the contacts whose forces are recorded: numbers in ascending order of their pairs, and the first body of each
+    _drawn: np.ndarray = np.empty(0, dtype=int)
+    _below: np.ndarray = np.empty(0, dtype=int)
 
     def _put_ties(self, ties: Ties | None, place: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> None:
         """Ties; place: the places (anchors, 2 or 3) of anchors in the frames of their bodies (anchors), of none in the ground."""
@@ -255,6 +276,53 @@ class BodyModel(Owner, ABC, Generic[Found]):
             status, "ties: the stiffness or damping must be above 0, and the prestress must lie between the least and the greatest tension"
         )
         self._ties = n
+
+    def _put_drawn(self, drawn: DrawnContacts | None, place: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> None:
+        """Contacts whose forces are recorded with their places; place: vectors (k, 2 or 3) as drawn in the frames of bodies (k)."""
+        if drawn is None or not len(drawn.body):
+            return
+        rows = {(a, b): k for k, (a, b) in enumerate(self._joints.tolist())}
+        pairs = [(min(a, b), max(a, b)) for a, b in drawn.body.tolist()]
+        if any(pair not in rows for pair in pairs):
+            raise IndexError("a contact whose force is recorded lies between bodies without a joint")
+        row = np.array([rows[pair] for pair in pairs])
+        order = np.argsort(row, kind="stable")
+        first = np.array([pairs[k][0] for k in order])
+        corners = [drawn.corners[k] for k in order]
+        count = [len(x) for x in corners]
+        own, normal = np.zeros((sum(count), 3)), np.zeros((len(order), 3))
+        local = place(np.concatenate(corners), np.repeat(first, count))
+        own[:, : local.shape[1]] = local
+        way = place(drawn.normal[order], first) - place(np.zeros_like(drawn.normal), first)
+        normal[:, : way.shape[1]] = way
+        status = _core.api_dem_run.places(
+            self.handle,
+            integers("pairs of contacts", row[order] + 1),
+            integers("corners of contacts", 1 + np.cumsum([0, *count])),
+            real("corners of contacts", own.T, (3, None)),
+            real("normals of contacts", normal.T, (3, None)),
+        )
+        check(status, "contacts whose forces are recorded")
+        self._drawn, self._below = order, first
+
+    def _drawn_forces(self, points: int) -> dict[str, np.ndarray]:
+        """Forces of those contacts in the last run, by the names of FoundRun; arms in the frames of the bodies (t, n, 3) [m]."""
+        n = len(self._drawn)
+        press, status = _core.api_dem_run.place_forces(self.handle, n, points)
+        check(status, "forces of the contacts")
+        found = np.empty((points, n, 7))
+        found[:, self._drawn] = press.T
+        with np.errstate(divide="ignore", invalid="ignore"):
+            arm = found[..., 4:] / found[..., 3, None]
+        return {
+            "contact_force": found[..., : 3 if self.in_space else 2],
+            "contact_normal": found[..., 3],
+            "contact_arm": self._drawn_arm(arm),
+        }
+
+    @abstractmethod
+    def _drawn_arm(self, arm: np.ndarray) -> np.ndarray:
+        """Vectors (t, n, 3) in the frames of the first bodies of contacts, as drawn (t, n, 2 or 3)."""
 
     def _put_moves(self, moves: Sequence[SupportMove], put: Callable[..., int]) -> None:
         """Movements of supports, by the routine `put` of the core."""
@@ -420,6 +488,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
             "joint_force": joint[: 3 if self.in_space else 2].T,
             "joint_friction": joint[3].T,
             "joint_damping": joint[4].T,
+            **self._drawn_forces(points),
             "effort": Effort(*(int(n) for n in took), *(float(value) for value in measures)),
         }
 

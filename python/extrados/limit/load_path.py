@@ -63,7 +63,9 @@ class LoadPath:
         self.shear = ratio * np.where(points.stiffness > 0.0, points.stiffness, held)
         self.least = BALANCED * points.weight
         self.solves = 0
-        self.stiffness = {border: StiffnessFactor(points, border=border) for border in (False, True)}
+        if not points.live.any():
+            raise NoAnswer("no live load acts on a block, so no load path exists")
+        self.stiffness = StiffnessFactor(points)
         self.answers_t = sparse.csr_array(points.answers.T)
 
     def follow(self) -> SlidingState:
@@ -72,9 +74,9 @@ class LoadPath:
         nothing, m, k = np.zeros(len(p.dead)), len(p.friction), p.answers.shape[1]
         still = np.zeros((m, p.dimension))
         state = _State(nothing, 0.0, still, still, np.zeros(k), np.zeros(k), still[:, 1:], np.zeros(m), np.zeros(m))
-        bonded = self._factor(self._bonded(), 0.0, border=False)
-        # before the next factors replace these
-        start, response = bonded.solve(p.dead), float(p.live @ bonded.solve(p.live))
+        self._factor(self._bonded(), 0.0)
+        start, unit = self.stiffness.solve(p.dead, p.live)
+        response = float(p.live @ unit)
         upright = self._held(state, start, 0.0, None)
         if upright is None:
             raise NoAnswer("no equilibrium with elastic joints was found under self-weight")
@@ -148,15 +150,9 @@ class LoadPath:
         for _ in range(ITERATIONS):
             if np.abs(rest).max() <= self.least and abs(short) <= 1e-9 * abs(work or 1.0):
                 return state
-            try:
-                factor = self._factor(self._tangent(old, state), hold, border=work is not None)
-            except RuntimeError:
+            if not self._factor(self._tangent(old, state), hold):
                 return None
-            if work is None:
-                du, dgamma = factor.solve(rest), 0.0
-            else:
-                both = factor.solve(np.append(rest, short))
-                du, dgamma = both[:-1], float(both[-1])
+            du, dgamma = (self.stiffness.solve(rest)[0], 0.0) if work is None else self.stiffness.solve_beside_load(rest, short)
             if not np.isfinite(du).all():
                 return None
             share, best = 1.0, (1.0, left(u + du, gamma + dgamma))
@@ -213,7 +209,7 @@ class LoadPath:
         out[:, 1:, 1:] = self.shear[:, None, None] * np.eye(d - 1)
         return out, np.ones(self.points.answers.shape[1])
 
-    def _factor(self, tangent: tuple[np.ndarray, np.ndarray], hold: float, *, border: bool) -> StiffnessFactor:
-        """Factors of the stiffness of the blocks, bordered by the live load."""
+    def _factor(self, tangent: tuple[np.ndarray, np.ndarray], hold: float) -> bool:
+        """Factors of the stiffness of the blocks; False where it is singular."""
         self.solves += 1
-        return self.stiffness[border].factor(*tangent, hold + STIFFENING)
+        return self.stiffness.factor(*tangent, hold + STIFFENING)

@@ -1,67 +1,89 @@
-"""Factors of the stiffness of rigid blocks on springs at their points of contact, with one pattern and one order for all.
+"""Factors of the stiffness of rigid blocks on springs at their points of contact, as a band with one order for all.
 
 K = M D M' + A diag(a) A' + hold I over the motions of the blocks: M the forces of the points, D (points, d, d) their springs, A
-the answers. With a border, K stands beside the live load: [K, -live; live', 0].
+the answers. Beside the live load: [K, -live; live', 0], solved by its blocks with one refinement, so that K may be nearly
+singular, as it is at collapse (Govaerts and Pryce 1993).
 """
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
+from scipy.sparse.csgraph import reverse_cuthill_mckee
 
+from extrados.core.limit import SpringBand
 from extrados.limit.contact_points import ContactPoints
-from extrados.limit.errors import NoAnswer
 
 
 class StiffnessFactor:
-    """The stiffness of one structure; `factor` replaces the factors by those of other springs. NoAnswer for a border without live load."""
+    """The stiffness of one structure; `factor` replaces the factors by those of other springs."""
 
-    def __init__(self, points: ContactPoints, *, border: bool):
+    def __init__(self, points: ContactPoints):
         n = len(points.dead)
-        self._border = border
-        self.size = n + border
-        self._arms, row, column, first = _arms_of(points)
+        self._points = points
+        arms, equation = _arms_of(points)
         answers = points.answers.tocsc()
         one, other = _pairs(answers.indptr)
         self._answer = np.repeat(np.arange(answers.shape[1]), np.diff(answers.indptr))[one]
         self._outer = answers.data[one] * answers.data[other]
-        inner, live = np.arange(n), np.flatnonzero(points.live) if border else np.empty(0, dtype=int)
-        if border and not len(live):
-            raise NoAnswer("no live load acts on a block, so no load path exists")
-        edge = np.full(len(live), n)
-        self._fixed = np.concatenate([-points.live[live], points.live[live]])
-        rows = np.concatenate([row, answers.indices[one], inner, live, edge])
-        columns = np.concatenate([column, answers.indices[other], inner, edge, live])
-        self._used = first
-        # The order that the solver finds for the whole pattern serves all springs.
-        weights = np.concatenate([np.full(len(rows) - n - 2 * len(live), 1e-3), np.full(n, 1e3), self._fixed])
-        whole = sparse.csc_array((weights, (rows, columns)), shape=(self.size, self.size))
-        self._order = splu(whole, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}).perm_c.astype(np.int64)
-        places, self._place = np.unique(self._order[columns] * self.size + self._order[rows], return_inverse=True)
-        self._rows = (places % self.size).astype(np.int32)
-        self._start = np.searchsorted(places, np.arange(self.size + 1) * self.size).astype(np.int32)
+        rows, columns = answers.indices[one], answers.indices[other]
+        point, slot = np.nonzero(equation >= 0)
+        reach = sparse.csr_array((np.ones(len(point)), (equation[point, slot], point)), shape=(n, len(equation)))
+        coupled = sparse.coo_array(reach @ reach.T + sparse.csr_array((np.ones(len(rows)), (rows, columns)), shape=(n, n)))
+        width, self._order = min(
+            ((int(np.abs(np.subtract(*(place[i] for i in coupled.coords))).max(initial=0)), place) for place in _orders(coupled)),
+            key=lambda one: one[0],
+        )
+        self._springs = SpringBand(arms, np.where(equation >= 0, self._order[equation], -1), n, width)
+        self._place = (self._order[columns], 2 * width + self._order[rows] - self._order[columns])
+        self._diagonal = 2 * width
+        self._live = points.live
 
-    def factor(self, springs: np.ndarray, answers: np.ndarray, hold: float) -> "StiffnessFactor":
-        """The factors for springs (points, d, d), answers (k) and `hold` on the diagonal; RuntimeError where K is singular."""
-        pressed = np.matmul(self._arms.transpose(0, 2, 1), np.matmul(springs, self._arms))
-        values = [pressed.ravel()[self._used], answers[self._answer] * self._outer]
-        values += [np.full(self.size - self._border, hold), self._fixed]
-        data = np.bincount(self._place, weights=np.concatenate(values), minlength=len(self._rows))
-        matrix = sparse.csc_array((data, self._rows, self._start), shape=(self.size, self.size))
-        self._factors = splu(matrix, permc_spec="NATURAL", options={"SymmetricMode": True}, diag_pivot_thresh=0.1)
-        return self
+    def factor(self, springs: np.ndarray, answers: np.ndarray, hold: float) -> bool:
+        """The factors for springs (points, d, d), answers (k) and `hold` on the diagonal; False where K is singular."""
+        self._now = springs, answers, hold
+        self._springs.lay(springs)
+        np.add.at(self._springs.band, self._place, answers[self._answer] * self._outer)
+        self._springs.band[:, self._diagonal] += hold
+        return self._springs.factor()
 
-    def solve(self, right: np.ndarray) -> np.ndarray:
-        """x of K x = right (size), by the last factors."""
-        ordered = np.empty(self.size)
-        ordered[self._order] = right
-        return self._factors.solve(ordered)[self._order]
+    def solve(self, *rights: np.ndarray) -> np.ndarray:
+        """The x (sides, n) of K x = right (n) of each side, by the last factors."""
+        ordered = np.empty((len(rights), len(self._order)))
+        ordered[:, self._order] = rights
+        return self._springs.solve(ordered)[:, self._order]
+
+    def solve_beside_load(self, rest: np.ndarray, short: float) -> tuple[np.ndarray, float]:
+        """Motion u (n) and multiplier g of K u - g live = rest, live . u = short; not finite where no motion does work."""
+        live = self._live
+        u, unit = self.solve(rest, live)
+        work = float(live @ unit)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            g = np.divide(short - float(live @ u), work)
+            u = u + g * unit
+            (more,) = self.solve(rest - self._times(u) + g * live)
+            step = np.divide(short - float(live @ (u + more)), work)
+            return u + more + step * unit, float(g + step)
+
+    def _times(self, u: np.ndarray) -> np.ndarray:
+        """K u."""
+        p, (springs, answers, hold) = self._points, self._now
+        force = np.matmul(springs, (p.rates @ u).reshape(len(springs), -1, 1))
+        return p.matrix @ force.ravel() + p.answers @ (answers * (p.answers.T @ u)) + hold * u
 
 
-def _arms_of(points: ContactPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Forces of each point on the equations that it acts on, (points, d, most equations) with zeros beyond; row and column of the
-    products of these, and their places among (points, most, most)."""
+def _orders(coupled: sparse.coo_array) -> tuple[np.ndarray, np.ndarray]:
+    """Places of the equations (n) in two orders: as they come, and by Reverse Cuthill-McKee."""
+    n = coupled.shape[0]
+    by_levels = np.empty(n, dtype=np.int64)
+    by_levels[reverse_cuthill_mckee(coupled.tocsr(), symmetric_mode=True)] = np.arange(n)
+    return np.arange(n), by_levels
+
+
+def _arms_of(points: ContactPoints) -> tuple[np.ndarray, np.ndarray]:
+    """Forces of each point on the equations that it acts on, (points, d, most equations) with zeros beyond; these equations
+    (points, most), -1 beyond."""
     m, d = len(points.friction), points.dimension
     entries = points.matrix.tocoo()
+    entries.eliminate_zeros()
     point, axis = np.divmod(entries.coords[1].astype(np.int64), d)
     keys, slot = np.unique(point * len(points.dead) + entries.coords[0], return_inverse=True)
     of, row = np.divmod(keys, len(points.dead))
@@ -72,10 +94,7 @@ def _arms_of(points: ContactPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray,
     arms[point, axis, slots[slot]] = entries.data
     equation = np.full((m, most), -1)
     equation[of, slots] = row
-    shape = (m, most, most)
-    rows, columns = (np.broadcast_to(one, shape).ravel() for one in (equation[:, :, None], equation[:, None, :]))
-    used = np.flatnonzero((rows >= 0) & (columns >= 0))
-    return arms, rows[used], columns[used], used
+    return arms, equation
 
 
 def _pairs(start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

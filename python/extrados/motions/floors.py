@@ -3,7 +3,6 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.signal import cont2discrete, lfilter
 
 from extrados.core.ground import Ground
 from extrados.motions.motion import Motion
@@ -26,6 +25,8 @@ class Sway:
 
         (1 - gamma psi) a_g + gamma psi a, with a the absolute acceleration of an oscillator of T_1 and xi: a'' = -w^2 u - 2 xi w u'.
         """
+        from scipy.signal import cont2discrete, lfilter  # takes half a second to load
+
         w = 2.0 * np.pi / self.period
         top, below = [2.0 * self.damping * w, w**2], [1.0, 2.0 * self.damping * w, w**2]
         b, a, _ = cont2discrete((top, below), step, method="foh")

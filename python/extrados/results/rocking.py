@@ -168,7 +168,8 @@ class Rocking(KindResults):
         "rocking against a wall: ratio of angular velocity after / before the rebound, from the deck or from three impacts"
     )
     energy_residual_ratio: float = fact(
-        "greatest error of the energy balance, divided by the greatest mechanical energy, or by the work of the ground if this is greater"
+        "greatest error of the energy balance, divided by the greatest mechanical energy (on a compliant base, by its range), or by the work of "
+        "the ground if this is greater"
     )
     steps: int = fact("number of time steps of the integrator")
     rejected_steps: int = fact("number of rejected time steps")

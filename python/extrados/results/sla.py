@@ -188,7 +188,7 @@ class Comparison(ResultModel):
         "share of the measured points at which the calculated envelope lies between the least and the greatest measured load"
     )
     half_band_ratio: float = fact(
-        "mean half of the distance between the least and the greatest measured load, divided by the mean measured load"
+        "half of the distance between the least and the greatest measured load, divided by their mean; averaged over the measured displacements"
     )
 
 

@@ -68,6 +68,8 @@ def _window(run: Stored, name: str, picks: list[int]) -> tuple[float, float, flo
 
 #: Of the window: length of the greatest force in a joint
 THRUST_LENGTH = 0.15
+#: Of the window: length of the greatest water pressure
+PRESSURE_LENGTH = 0.1
 
 
 class Scene:
@@ -82,6 +84,7 @@ class Scene:
         self.tie_block: np.ndarray = get["tie_block"].numbers if "tie_block" in get else np.empty((0, 2), int)
         self.tie_point: np.ndarray = get["tie_point"].numbers if "tie_point" in get else np.empty((0, 2, 2))
         self.window = _window(run, name, picks)
+        self.water = [get[f"water_{k}"].numbers for k in ("point", "pressure", "block")] if "water_point" in get else None
         self.thrust_force = get["thrust_force"].numbers if "thrust_force" in get else np.zeros((0, 0, 2))
         self.thrust_place = get["thrust_place"].numbers if "thrust_place" in get else np.zeros((0, 0, 2))
         self.longest = float(np.linalg.norm(self.thrust_force[picks], axis=2).max(initial=0.0)) if self.thrust_force.size else 0.0
@@ -119,6 +122,18 @@ class Scene:
         place = self.thrust_place[k][there]
         return np.stack([place - half[there], place + half[there]], axis=1)
 
+    def pressure(self, k: int) -> np.ndarray:
+        """The water pressure at output k as segments (n, 2, 2) that end on the faces; their lengths are in proportion."""
+        if self.water is None:
+            return np.empty((0, 2, 2))
+        point, pressure, block = self.water
+        there = np.empty_like(point)
+        for i in np.unique(block):
+            there[block == i] = moved(point[block == i], self.centroid[i], self.place[k, i])
+        left, right, bottom, top = self.window
+        length = PRESSURE_LENGTH * max(right - left, top - bottom) / float(np.hypot(*pressure.T).max())
+        return np.stack([there - length * pressure, there], axis=1)
+
     def draw(self, ax: Axes, k: int, arrows: float) -> None:
         """Blocks at output k, hinges, and velocities as arrows (`arrows`: metres per m/s)."""
         place, rate = self.place[k], self.rate[k]
@@ -129,6 +144,7 @@ class Scene:
         ax.add_collection(PolyCollection(shapes, facecolor=style.STONE, edgecolor=style.EDGE, linewidth=0.7))
         ax.add_collection(LineCollection(list(self.ties(k)), color=style.THRUST, linewidth=1.6, zorder=5))
         ax.add_collection(LineCollection(list(self.thrust(k)), color=style.HINGE, linewidth=1.4, zorder=4))
+        ax.add_collection(LineCollection(list(self.pressure(k)), color=style.WATER, linewidth=0.7, zorder=3))
         points = self.hinges(k)
         if len(points):
             style.draw_hinges(ax, points)
@@ -213,6 +229,8 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         if scene.longest
         else ""
     )
+    if scene.water is not None:
+        forces += f" Blue lines: water pressure on faces and in joints; the longest is {np.hypot(*scene.water[1].T).max() / 1e3:.3g} kPa."
     return saved, f"Displaced structure, hinges (circles) and velocities of the blocks{scale}.{forces}"
 
 

@@ -344,8 +344,8 @@ def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             (
                 style.save(fig, folder, f"{name}-durations"),
                 (
-                    "Left: greatest rotation (Fig. 6-8). Right: share of the motions that cause collapse, with 95 % intervals. Both are "
-                    "plotted over the duration of the motion."
+                    "Left: greatest rotation (Fig. 6-8). Right: share of the motions that cause collapse, with "
+                    f"{100 * r.confidence:g} % intervals. Both are plotted over the duration of the motion."
                 ),
             )
         ]

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 STEPS = "#3a7d44"  # states found by equilibrium iterations
 STONE, EDGE, THRUST, HINGE, GROUND, SAFE = "#e8e2d4", "#6b6355", "#b3261e", "#1f4e79", "#3b7a57", "#3b7a57"
+WATER = "#5b8fb9"
 MODES = ("#f4f1ea", "#cfe3d6", "#f2c28b", "#c8553d", "#9db4cf")
 
 #: Marks labels that are spread as a figure is saved

@@ -11,7 +11,8 @@ from extrados.analyses.context import Refused
 from extrados.model.errors import BadGeometry, blaming
 from extrados.model.geometry.polygons import signed_area
 from extrados.model.properties import Material
-from extrados.model.structures.plan import MEETS, Plan, PlanWall
+from extrados.model.structures.plan import Plan
+from extrados.model.structures.plan_parts import MEETS, PlanWall
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 

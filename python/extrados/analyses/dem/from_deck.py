@@ -8,9 +8,10 @@ import numpy as np
 from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.calibration import beta_for_restitution
 from extrados.analyses.dem.model import JointValues, Model
-from extrados.analyses.dem.tables import DemTable, SpatialDem
+from extrados.analyses.dem.tables import Dem, DemTable, SpatialDem
 from extrados.analyses.dem.ties import element_ties, section_strands
 from extrados.model.geometry.assembly import GROUND
+from extrados.model.geometry.water import water_pressure
 from extrados.model.structures.arch import ArchAssembly
 from extrados.views.building import Building
 from extrados.views.rockers.arch import ArchModel
@@ -63,4 +64,6 @@ def make_model(building: Building, options: DemTable) -> Model:
     ties = element_ties(building, section_strands(building), rigid.body_of_block, options.has_rates)
     crushes = isinstance(options, SpatialDem) and options.crushing
     strength = building.material.compressive_strength if crushes else None
-    return Model(assembly, rigid, joint_values(building), ties, strength or 0.0)
+    asked = options.water if isinstance(options, Dem) else None
+    water = None if asked is None else water_pressure(assembly, asked.level, asked.side, asked.uplift, asked.density)
+    return Model(assembly, rigid, joint_values(building), ties, strength or 0.0, water)

@@ -95,6 +95,7 @@ def _numbers(options: Dem, trial: Trial, seen: Seen, ground: np.ndarray) -> dict
         "peak_rotation_rad": {names[i]: float(seen.rotation[peak[i], i]) for i in measures.tracked(model, options, found)},
         "restitution_measured": measures.restitution(found, seen.state, ground) if model.count == 1 else None,
         "restitution_housner": float(BlockModel(model.assembly).housner[0]) if isinstance(model.assembly, BlockAssembly) else None,
+        **measures.water_force(model),
     }
 
 
@@ -148,6 +149,7 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
         "ground": Array(ground, ("time",), "m/s^2"),
         "snapshot_time": Array(measures.snapshot_times(options, found), ("snapshot",), "s"),
         **measures.support_arrays(model),
+        **measures.water_arrays(model),
     }
 
 

@@ -23,7 +23,8 @@ SOLIDS_FOR_THREADS = 60
 KEEP_SECONDS, ENDED = 10.0, 999_999_999_999
 NUMBERS = ("stop_time", "step", "critical_step", "residual")
 COUNTS = ("steps", "settling_steps", "searches", "most_pairs")
-HISTORIES = ("time", "place", "rate", "tension", "joint_force", "joint_friction", "joint_damping")
+DRAWN = ("contact_force", "contact_normal", "contact_arm")
+HISTORIES = ("time", "place", "rate", "tension", "joint_force", "joint_friction", "joint_damping", *DRAWN)
 OF_BODIES = ("settled", "bounces", "airborne", "extreme", "joint_body")
 NO_CONTACTS = dem.Contacts(*(np.zeros(shape) for shape in ((0, 2), (0, 2), (0, 2), 0, 0)))
 

@@ -15,6 +15,7 @@ from extrados.core import dem, dem3, dem_run
 from extrados.core.dem_run import SupportMove
 from extrados.model.geometry.assembly import GROUND
 from extrados.results.dem import APART, CLOSED, HINGED_FIRST, HINGED_SECOND, CollapseCriterion, Convergence, DemOutcome
+from extrados.results.fields import Keys
 from extrados.results.model import Array, TableData
 from extrados.schema.constants import GRAVITY
 from extrados.views.rigid import FOOTING
@@ -33,10 +34,10 @@ LAST_PART = 20
 MOST_TRACKED = 24
 
 
-def openings(model: Model, run: dem.Run, drawn: bool = False) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def openings(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """How far each joint gapes at its ends p and q, and its slip at the closed end (time, joint) [m].
 
-    Measured from the settled state, or from the blocks as drawn, slip along the mean of the two faces, gaps along the normal of either face, whichever is less: the
+    Measured from the settled state, slip along the mean of the two faces, gaps along the normal of either face, whichever is less: the
     corner of a block that slid and turned lies on the face of the other, at an angle. NaN where both sides are one body.
     """
     a = model.assembly
@@ -47,7 +48,7 @@ def openings(model: Model, run: dem.Run, drawn: bool = False) -> tuple[np.ndarra
             continue
         ends, turns = [], []
         for body in pair:
-            place, rest = run.place[:, body], np.append(model.rigid.centroid[body], 0.0) if drawn else run.settled[body]
+            place, rest = run.place[:, body], run.settled[body]
             turn = place[:, 2] - rest[2]
             c, s = np.cos(turn), np.sin(turn)
             moved = []
@@ -345,6 +346,23 @@ def support_arrays(model: Model) -> dict[str, Array]:
     return {
         "support_outline": Array(np.concatenate(parts), ("support_vertex", "axis"), "m", "outlines of the supports"),
         "support_start": Array(np.cumsum([0, *map(len, parts)]), ("support_edge",), "", "first vertex of each"),
+    }
+
+
+def water_force(model: Model) -> Keys:
+    """The force of the water on all blocks [N], as a key of results; nothing without water."""
+    return {} if model.water is None else {"water_force_N": model.water.force.sum(axis=0).tolist()}
+
+
+def water_arrays(model: Model) -> dict[str, Array]:
+    """The water pressure, for pictures; nothing without water."""
+    water = model.water
+    if water is None:
+        return {}
+    return {
+        "water_point": Array(water.point, ("wet_point", "axis"), "m", "points of the faces and joints on which water presses"),
+        "water_pressure": Array(water.force / water.area[:, None], ("wet_point", "axis"), "Pa", "pressure there, to +x and upward"),
+        "water_block": Array(water.block, ("wet_point",), "", "numbers of the blocks on which it acts"),
     }
 
 

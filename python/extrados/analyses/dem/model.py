@@ -16,6 +16,7 @@ from extrados.core.dem_run import Law
 from extrados.core.errors import Cancelled, status_code
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.earth import passive_left_out
+from extrados.model.geometry.water import Pressure
 from extrados.schema.constants import GRAVITY
 from extrados.views.rigid import RigidBodies
 
@@ -32,13 +33,14 @@ class JointValues(ContactValues):
 @dataclass(frozen=True)
 class Model:
     """An assembly with its bodies; laws come from joint values, so that sweeps share the geometry. strength: at which the corners of joints
-    crush, 0 never [Pa]."""
+    crush, 0 never [Pa]; water: its pressure on the blocks."""
 
     assembly: Assembly
     rigid: RigidBodies
     values: JointValues
     ties: ElementTies = NO_TIES
     strength: float = 0.0
+    water: Pressure | None = None
 
     @property
     def count(self) -> int:
@@ -49,6 +51,11 @@ class Model:
     def mass(self) -> np.ndarray:
         """Masses of the bodies [kg]."""
         return self.rigid.mass
+
+    @property
+    def load(self) -> np.ndarray | None:
+        """Constant loads of all bodies (bodies, 4) [N, N, N m, N m], as core.dem.Bodies has them."""
+        return None if self.water is None else self.water.on_bodies(self.rigid.body_of_block, self.rigid.centroid)
 
     @property
     def body_names(self) -> list[str]:
@@ -80,7 +87,18 @@ class Model:
                 laws.append(one)
             joints[pair] = numbers[one]
         r = self.rigid
-        return dem.Bodies(r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints, self.ties.core)
+        return dem.Bodies(r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints, self.ties.core, self.load)
+
+    def drawn(self) -> dem_run.DrawnContacts:
+        """The joints between two bodies, for their forces and places."""
+        one, on = self.assembly, self.between
+        ends = [np.stack([one.p[j], one.q[j]]) for j in on]
+        return dem_run.DrawnContacts(np.array([self.rigid.joints[j] for j in on]), ends, one.normal[on])
+
+    @property
+    def between(self) -> list[int]:
+        """Numbers of the joints between two bodies, in which groups of blocks have none."""
+        return [j for j, pair in enumerate(self.rigid.joints) if pair is not None]
 
 
 class Falls(Refused):
@@ -126,6 +144,11 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
     """What is doubtful about the damping (thesis 7.2.1, 7.4.2), what of the building is left out, and by how much blocks are
     not as drawn."""
     found = [*passive_left_out(model.assembly.earth), *adjusted(model)]
+    if model.water is not None:
+        found.append(
+            "the water pressure is constant: hydrodynamic pressure, water that enters cracks during the motion, and a change of the wet "
+            "faces are neglected. The pressure acts from the start, so `self-weight` in these results includes this pressure"
+        )
     if options.rigid:
         return found + doubts_of_rigid_mortar(model.values)
     found += doubts_of_springs(values or model.values)
@@ -181,10 +204,19 @@ def doubts_of_rigid_mortar(values: ContactValues) -> list[str]:
 def _doubts_of_tension(values: ContactValues) -> list[str]:
     if not np.nanmax(values.tension, initial=0.0) > 0.0:
         return []
-    return [
+    found = [
         "the tensile strength of mortar acts at the ends or corners of a joint, so the joint carries up to three times the bending "
         "moment of an elastic joint"
     ]
+    less = np.flatnonzero(values.tension * values.friction > values.cohesion * (1.0 + 1e-9))
+    if len(less):
+        most = values.cohesion[less] / values.friction[less]
+        j = int((values.tension[less] - most).argmax())
+        found.append(
+            f"{len(less)} joints carry less tension than the deck gives, because Coulomb's law allows at most cohesion / friction: "
+            f"{most[j] / 1000.0:.3g} kPa instead of {values.tension[less][j] / 1000.0:.3g} kPa"
+        )
+    return found
 
 
 def unconverged(effort: dem_run.Effort) -> list[str]:

@@ -18,6 +18,8 @@ from extrados.model.errors import BadGeometry, Key
 from extrados.model.geometry.anchors import moved_joints
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.solids.assembly import SolidAssembly
+from extrados.model.geometry.water import water_pressure
+from extrados.model.properties import NO_SLIDING_COEFFICIENT
 from extrados.model.structures.arch import ArchAssembly
 from extrados.model.structures.block import BlockAssembly
 from extrados.views.building import Building
@@ -45,10 +47,13 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
         yield lambda: _refuse_bars(building)
     if _rigid(options):
         yield lambda: _refuse_springs(building)
+        yield lambda: _refuse_sliding_mortar(building)
     if isinstance(options, tables.SpatialDem) and options.crushing:
         yield lambda: _refuse_crushing(building, _rigid(options))
     if isinstance(options, tables.Dem) and options.thrust:
         yield lambda: _refuse_worn_thrust(building)
+    if isinstance(options, tables.Dem) and (water := options.water) is not None:
+        yield partial(_refuse_water, stones, water)
     yield lambda: refuse_rigid_ties(building)
     yield lambda: section_strands(building)
     if building.joints.damping == "restitution" and building.joints.beta is None:
@@ -106,6 +111,17 @@ def _refuse_springs(building: Building) -> None:
         raise Refused(text, ("supports", "stiffness"))
 
 
+def _refuse_sliding_mortar(building: Building, solids: SolidAssembly | None = None) -> None:
+    """Refused where mortar is on rigid contacts that cannot slide: Coulomb's law allows it no tension. solids: in space."""
+    cohesion, tension, friction = (building.joint_property(name, solids) for name in ("cohesion", "tension", "friction"))
+    if ((np.fmax(cohesion, tension) > 0.0) & (friction >= NO_SLIDING_COEFFICIENT)).any():
+        raise Refused(
+            'rigid contacts with friction = "no-sliding" cannot have mortar: give the coefficient of friction, or remove `cohesion` and '
+            "`tension`",
+            ("joints", "friction"),
+        )
+
+
 def _refuse_crushing(building: Building, rigid: bool) -> None:
     """Refused where corners are to crush without a strength, on rigid contacts, or at joints with mortar."""
     key = ("analysis", "crushing")
@@ -118,6 +134,23 @@ def _refuse_crushing(building: Building, rigid: bool) -> None:
             raise Refused(
                 "`crushing` is only for joints without mortar: remove `cohesion` and `tension`, or remove `crushing`", ("joints", name)
             )
+
+
+def _refuse_water(stones: Assembly, water: tables.Water) -> None:
+    """Refused where water wets nothing or flows over the structure, where soil lies in between, or an opening in linear uplift."""
+    outline = np.concatenate(stones.outlines)
+    low, high = outline.min(axis=0), outline.max(axis=0)
+    if not low[1] < water.level <= high[1]:
+        raise Refused(
+            f"the water level is {water.level:.4g} m, but the structure extends from {low[1]:.4g} to {high[1]:.4g} m: give a level within",
+            ("analysis", "water", "level"),
+        )
+    if stones.fill is not None:
+        raise Refused("the water pressure on a structure with fill is not calculated: remove `water` or the fill", ("analysis", "water"))
+    try:
+        water_pressure(stones, water.level, water.side, water.uplift, water.density)
+    except BadGeometry as error:
+        raise Refused(str(error), ("analysis", "water", "uplift")) from None
 
 
 def _refuse_worn_thrust(building: Building) -> None:
@@ -146,6 +179,8 @@ def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: Solid
     for text, key in refusals(building, options):
         yield partial(refuse, text, key)
     yield lambda: refuse_stones(stones)
+    if _rigid(options):
+        yield lambda: _refuse_sliding_mortar(building, stones)
     yield lambda: refuse_rigid_ties(building)
     yield building.strands
     yield lambda: damper_strands(building)

@@ -51,6 +51,8 @@ def closed_settlement(model: Model, values: JointValues) -> tuple[float, float]:
     rows, stiffness = sparse.vstack(apart, format="csr"), np.concatenate(spring)
     weight = np.zeros((rigid.count, 3))
     weight[:, 1] = -GRAVITY * rigid.mass[: rigid.count]
+    if (load := model.load) is not None:
+        weight += load[: rigid.count, :3]
     gap = _gaps(model.assembly)[joint]
     nothing = np.zeros_like(gap)
     closing = rows.T @ (stiffness * np.concatenate([gap, nothing, gap, nothing]))

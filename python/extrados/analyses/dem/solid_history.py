@@ -1,5 +1,6 @@
 """dem of blocks in space under a motion: from rest under the own weight to the end, to rest or to collapse."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -60,7 +61,8 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
 
     def job_of(factor: float) -> SolidRuns:
         larger = tuple(move.times(factor) for move in moves)
-        return SolidRuns(model.bodies(), [SolidTask(core_options(context, options, model), moved, across, factor, larger)])
+        bodies = replace(model.bodies(), drawn=model.drawn() if options.thrust else None)
+        return SolidRuns(bodies, [SolidTask(core_options(context, options, model), moved, across, factor, larger)])
 
     collapse, job = Collapse.of(options.collapse_displacement, model.size), job_of(1.0)
     found = dem_model.checked(watched(context, "dem-solids", job, "discrete elements"), model)

@@ -105,13 +105,10 @@ def contacts(model: SolidModel, run: dem3.Run) -> tuple[np.ndarray, np.ndarray, 
     return opening, slip, state
 
 
-def carried(
-    run: dem3.Run, body: int, points: np.ndarray, normal: np.ndarray, rest: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Points (time, k, 3) [m] and a normal (time, 3) carried along with a body, or a support, from its settled state, or from where it was
-    drawn with its centroid at `rest` [m]."""
-    turn = run.turn[:, body] if rest is not None else run.turn[:, body] @ run.settled_turn[body].T
-    arm = points - (run.settled[body] if rest is None else rest)
+def carried(run: dem3.Run, body: int, points: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points (time, k, 3) [m] and a normal (time, 3) carried along with a body, or a support, from its settled state."""
+    turn = run.turn[:, body] @ run.settled_turn[body].T
+    arm = points - run.settled[body]
     return run.place[:, None, body] + np.einsum("txy,ky->tkx", turn, arm), turn @ normal
 
 

@@ -10,7 +10,7 @@ from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.impact_rules import ContactValues
 from extrados.analyses.dem.tables import Dem, DemDomain, SpatialDem
 from extrados.analyses.dem.ties import NO_TIES, ElementTies, element_ties
-from extrados.core import dem3
+from extrados.core import dem3, dem_run
 from extrados.core.dem_run import Law, SupportMove
 from extrados.model.errors import Key, NoView
 from extrados.model.geometry.anchors import moved_joints
@@ -99,6 +99,16 @@ class SolidModel:
             self.ties.core,
         )
 
+    def drawn(self) -> dem_run.DrawnContacts:
+        """All contacts, for their forces and places."""
+        return dem_run.DrawnContacts(self.sides, self.assembly.polygon, self.assembly.normal)
+
+    @property
+    def sides(self) -> np.ndarray:
+        """Bodies on both sides of each contact (contact, 2), supports for the ground."""
+        bodies = np.column_stack([self.assembly.a, self.assembly.b])
+        return np.where(bodies == GROUND, self.count + self.supports.of_joint[:, None], bodies)
+
     def _dowels(self) -> dem3.Dowels | None:
         """The keys, each as stiff as the shear springs of all contacts of the two stones that it holds together."""
         one, v = self.assembly, self.values
@@ -164,6 +174,7 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         asked += [
             ('base = "moving"', options.base == "moving", ("analysis", "base")),
             ("find_friction", options.find_friction, ("analysis", "find_friction")),
+            ("water", options.water is not None, ("analysis", "water")),
         ]
     if isinstance(options, DemDomain):
         asked.append(("mode_II", options.mode_II, ("analysis", "mode_II")))

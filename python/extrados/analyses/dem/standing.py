@@ -1,6 +1,7 @@
 """Whether limit analysis, and springs where contacts are rigid, agree with elements on what stands under its own weight."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -19,6 +20,7 @@ from extrados.limit.errors import CannotStand, NoAnswer
 from extrados.limit.programme import LimitAnalysis
 from extrados.limit.solids import SolidLimit
 from extrados.model.errors import WHOLE
+from extrados.model.geometry.water import Pressure
 from extrados.results.model import Result
 from extrados.views.building import Building
 
@@ -45,7 +47,7 @@ def compared(context: Context, rigid: bool, model: Model | SolidModel, find: Cal
     alone, doubt, warning = left_out(model), "", ""
     proof_of: Callable[[Building], CannotStand | None] = proof_of_solids
     if isinstance(model, Model):
-        proof_of = partial(proof_of_section, strength=model.strength or None)
+        proof_of = partial(proof_of_section, strength=model.strength or None, water=model.water)
     try:
         with interruptible():  # Ctrl-C between two runs stops the next one
             if rigid and not alone:  # first: Ctrl-C here loses nothing
@@ -119,11 +121,13 @@ def jammed(model: Model | SolidModel, threads: int) -> tuple[str, str]:
     return "", ""
 
 
-def proof_of_section(building: Building, strength: float | None = None) -> CannotStand | None:
+def proof_of_section(building: Building, strength: float | None = None, water: Pressure | None = None) -> CannotStand | None:
     """The proof by limit analysis that a section collapses under its own weight; None where an admissible state was found.
-    NoAnswer where neither was found. strength: at which joints crush [Pa]."""
+    NoAnswer where neither was found. strength: at which joints crush [Pa]; water: its pressure, as constant loads."""
     try:
         loads = loads_of(building.blocks(), None, building)
+        if water is not None:
+            loads = replace(loads, dead=loads.dead + water.about_origin(len(loads.dead)))
         limit = LimitAnalysis(building.blocks(), building.friction(), strength=strength, loads=loads)
         return None if limit.stands() else cannot_stand(limit)
     except (Disconnected, Refused) as error:

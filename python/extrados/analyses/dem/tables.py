@@ -9,8 +9,8 @@ from pydantic import Field, model_validator
 from extrados.analyses.statistics.tables import Hazard, Level, levels_in_units
 from extrados.analyses.table import Animated, BuildingAnalysis
 from extrados.schema.constants import GRAVITY
-from extrados.schema.quantities import Acceleration, Angle, Gravities, Length, Time
-from extrados.schema.table import key
+from extrados.schema.quantities import Acceleration, Angle, Density, Gravities, Length, Time
+from extrados.schema.table import Table, key
 
 if TYPE_CHECKING:
     from extrados.views.building import Building
@@ -172,6 +172,19 @@ class SpatialDem(DemTable):
         return super().reckons_with(building) | ({"material.compressive_strength"} if self.crushing else set())
 
 
+class Water(Table):
+    """Still water on one side of a plane section: constant pressure on the faces that it reaches, and in joints below its level."""
+
+    level: Length = key(about="height of the water surface, in the coordinates of the structure")
+    side: Literal["left", "right"] = key("left", "side of the structure on which the water is; left: towards -x")
+    uplift: Literal["none", "linear", "full"] = key(
+        "full",
+        "pressure in joints below the water surface. full: that of the water at the same height; linear: decreases along horizontal lines "
+        "from this pressure at the wet face to zero at the other face of the section; none: zero",
+    )
+    density: Density = key(1000.0, "of the water", gt=0)
+
+
 class Dem(SpatialDem, Animated):
     """Discrete elements: rigid blocks that rock, hinge, slide and fall (thesis chapter 7)."""
 
@@ -210,8 +223,12 @@ class Dem(SpatialDem, Animated):
     )
     thrust: bool = key(
         False,
-        "for springs: also calculate the place of the force in each joint and the stress at its ends or corners; drawings and the film show "
-        "these forces",
+        "also calculate the place of the force in each joint and the stress at its ends or corners; drawings and the film show these forces",
+    )
+    water: Water | None = key(
+        None,
+        "water on one side of a plane section. Its forces are those on the structure at rest: their directions and values do not change as "
+        "blocks move",
     )
     track: list[str] = key([], "names of the blocks whose rotation is recorded; default: all, at most 24", max_length=200)
     snapshot_times: list[Time] = key([], "times at which the structure is drawn; default: six characteristic times", max_length=24)
@@ -228,10 +245,6 @@ class Dem(SpatialDem, Animated):
 
     @model_validator(mode="after")
     def _places_of_forces(self) -> "Dem":
-        if self.thrust and self.rigid:
-            raise ValueError(
-                'rigid contacts do not determine the place of a force in a joint: give solver = "compliant", or remove `thrust`'
-            )
         if self.thrust and self.crushing:
             raise ValueError("the key `thrust` assumes elastic springs, which do not crush: remove `thrust` or `crushing`")
         return self

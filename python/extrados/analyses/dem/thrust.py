@@ -1,23 +1,21 @@
-"""Places of the forces in joints with springs, and the stress at their ends or corners; in the plane and in space.
+"""Places of the forces in joints, and the stress at their ends or corners; on springs and rigid contacts, in the plane and in space.
 
-The springs at the ends or corners of a contact give the centre of its pressure. The stress is that of a pressure that is linear over
-the contact, without tension, with the same force and centre (Navier).
+The centre of pressure of a contact is that of the normal forces of its points. The stress is that of a pressure that is linear over the
+contact, without tension, with the same force and centre (Navier).
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
-from extrados.analyses.dem.measures import openings
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.seen import BlocksSeen
-from extrados.analyses.dem.solid_measures import carried
 from extrados.analyses.dem.solid_model import SolidModel
-from extrados.analyses.dem.solid_settlement import corner_areas
 from extrados.analyses.dem.tables import Dem
-from extrados.core import dem, dem3, dem_run
+from extrados.core import dem, dem3
 from extrados.model.geometry.convex import hull
-from extrados.model.geometry.solids.contacts import GROUND
 from extrados.results.model import Array, Result
 
 #: Steps of Newton's method; error of the force, and of its moment over the greatest extent; shortest share of a step
@@ -76,6 +74,13 @@ def put_thrust(options: Dem, seen: BlocksSeen, result: Result) -> dict[str, floa
         return {}
     model, run = seen.model, seen.run
     assert isinstance(run, dem.Run | dem3.Run)
+    found = thrust_of(model, run)
+    if options.rigid and (degree := redundancy(model, found)):
+        result.warnings.append(
+            f"the forces of rigid contacts are not unique: at the start of the motion they have {degree} unknowns more than equations of "
+            "equilibrium. The key `thrust` gives one of many states of equilibrium; springs depend on the stiffness of the joints, and limit "
+            "analysis gives the least and the greatest thrust"
+        )
     if seen.sliding.ratio > SLID:
         result.warnings.append(
             f"the stresses at the edges of joints refer to the joints as drawn, but joints slide by up to {100 * seen.sliding.ratio:.2g} % of "
@@ -83,30 +88,49 @@ def put_thrust(options: Dem, seen: BlocksSeen, result: Result) -> dict[str, floa
         )
     if np.nanmax(model.values.tension, initial=0.0) > 0.0:
         result.warnings.append("the key `thrust` neglects the tension of mortar, in stresses as well as in the places of forces")
-    found = thrust_of(model, run)
+    if isinstance(model, SolidModel):
+        sides = np.column_stack([model.assembly.a, model.assembly.b])
+        result.arrays["contact_block"] = Array(sides, ("contact", "side"), "", "numbers of both blocks of each contact; -1 is the ground")
     result.arrays |= found.arrays()
     return {"edge_stress_at_rest_Pa": found.at_rest}
 
 
+def redundancy(model: Model | SolidModel, thrust: Thrust) -> int:
+    """Degree of static indeterminacy of the contacts at the start: unknowns less equations of equilibrium, summed over the groups of blocks
+    that touch each other. A contact that carries within its boundary has three unknowns (in space six), at its boundary two (three)."""
+    if not len(thrust.force):
+        return 0
+    loaded = np.flatnonzero(np.isfinite(thrust.place[0]).all(axis=1))
+    if isinstance(model, SolidModel):
+        freedoms, bodies, of_end = 6, model.sides[loaded], model.assembly.corner_joint
+    else:
+        freedoms, of_end = 3, np.repeat(np.arange(len(model.rigid.joints)), 2)
+        bodies = np.reshape([pair for j in loaded if (pair := model.rigid.joints[j])], (-1, 2))
+    within = ~np.isin(loaded, of_end[~np.isfinite(thrust.stress[0]).ravel()])
+    unknowns = np.where(within, freedoms, 2 if freedoms == 3 else 3)
+    low, high = bodies.min(axis=1), bodies.max(axis=1)
+    mobile = high < model.count
+    graph = coo_array((np.ones(mobile.sum()), (low[mobile], high[mobile])), shape=(model.count, model.count))
+    groups, group = connected_components(graph, directed=False)
+    free = -freedoms * np.bincount(group, minlength=groups)
+    np.add.at(free, group[low], unknowns)
+    return int(np.maximum(free, 0).sum())
+
+
 def _of_section(model: Model, run: dem.Run) -> Thrust:
-    one = model.assembly
-    gaps = openings(model, run, drawn=True)[:2]
-    spring = 0.5 * model.values.stiffness * one.length * one.depth
-    ends = np.stack([spring * np.maximum(-np.nan_to_num(gap), 0.0) for gap in gaps], axis=2)
-    normal = ends.sum(axis=2)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = ends[..., 1] / normal
-    place = np.full((*normal.shape, 2), np.nan)
-    for j, pair in enumerate(model.rigid.joints):
-        if pair is None:
-            continue
-        rest, now = model.rigid.centroid[pair[0]], run.place[:, pair[0]]
-        arm = one.p[j] + share[:, j, None] * (one.q[j] - one.p[j]) - rest
-        c, s = np.cos(now[:, 2]), np.sin(now[:, 2])
-        place[:, j] = now[:, :2] + np.stack([c * arm[:, 0] - s * arm[:, 1], s * arm[:, 0] + c * arm[:, 1]], axis=1)
-    pairs = [None if pair is None else (min(pair), max(pair)) for pair in model.rigid.joints]
-    sides = [1.0 if pair is None or pair[0] <= pair[1] else -1.0 for pair in model.rigid.joints]
-    return Thrust(_shared(run, pairs, sides, normal), place, edge_stress(normal / (one.length * one.depth), share))
+    one, on = model.assembly, model.between
+    pairs = np.reshape([pair for pair in model.rigid.joints if pair], (-1, 2))
+    low, along = pairs.min(axis=1), (one.q - one.p)[on]
+    now, arm = run.place[:, low], run.contact_arm
+    c, s = np.cos(now[..., 2]), np.sin(now[..., 2])
+    shape = (len(run.time), len(one.p))
+    force, place, stress = np.zeros((*shape, 2)), np.full((*shape, 2), np.nan), np.zeros((*shape, 2))
+    force[:, on] = np.where(pairs[:, :1] == low[:, None], 1.0, -1.0) * run.contact_force
+    place[:, on] = now[..., :2] + np.stack([c * arm[..., 0] - s * arm[..., 1], s * arm[..., 0] + c * arm[..., 1]], axis=2)
+    share = np.einsum("tjx,jx->tj", model.rigid.centroid[low] + arm - one.p[on], along) / one.length[on] ** 2
+    share = np.where(share < NEAR, 0.0, np.where(share > 1.0 - NEAR, 1.0, share))
+    stress[:, on] = edge_stress(run.contact_normal / (one.length[on] * one.depth), share)
+    return Thrust(force, place, stress)
 
 
 def edge_stress(mean: np.ndarray, share: np.ndarray) -> np.ndarray:
@@ -120,49 +144,17 @@ def edge_stress(mean: np.ndarray, share: np.ndarray) -> np.ndarray:
     return stress
 
 
-def _shared(run: dem_run.FoundRun, pairs: list[tuple[int, int] | None], sides: list[float], normal: np.ndarray) -> np.ndarray:
-    """Forces of the pairs of bodies (time, contact, axis) [N], on the first block of each contact, divided among the contacts of a pair as
-    their normal forces (time, contact) are."""
-    number = {(min(a, b), max(a, b)): (k, 1.0 if a <= b else -1.0) for k, (a, b) in enumerate(run.joint_body.tolist())}
-    found = np.zeros((*normal.shape, run.joint_force.shape[2]))
-    total: dict[tuple[int, int], np.ndarray] = {}
-    for j, pair in enumerate(pairs):
-        if pair is not None:
-            total[pair] = total.get(pair, 0.0) + normal[:, j]
-    for j, pair in enumerate(pairs):
-        if pair is None or pair not in number:
-            continue
-        k, way = number[pair]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.nan_to_num(normal[:, j] / total[pair])
-        found[:, j] = sides[j] * way * share[:, None] * run.joint_force[:, k]
-    return found
-
-
 def _of_solids(model: SolidModel, run: dem3.Run) -> Thrust:
-    one, rest = model.assembly, model.bodies().centroid
-    nt, nj = len(run.time), len(one.a)
-    normal, place, stress = np.zeros((nt, nj)), np.full((nt, nj, 3), np.nan), []
-    bodies = np.column_stack([one.a, one.b])
-    bodies = np.where(bodies == GROUND, model.count + model.supports.of_joint[:, None], bodies)
-    first, second = one.tangents
-    stiffness = model.shared(model.values.stiffness)
-    for j, (a, b) in enumerate(bodies.tolist()):
-        corners = one.polygon[j]
-        (moved, way), (other, back) = (carried(run, k, corners, one.normal[j], rest[k]) for k in (a, b))
-        mean = way + back
-        mean /= np.linalg.norm(mean, axis=1)[:, None]
-        gap = np.einsum("tkx,tx->tk", moved - other, mean)
-        force = stiffness[j] * corner_areas(corners) * np.maximum(-gap, 0.0)
-        normal[:, j] = force.sum(axis=1)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            weight = force / normal[:, j, None]
-        place[:, j] = np.einsum("tk,tkx->tx", weight, moved)
-        flat = (corners - corners.mean(axis=0)) @ np.stack([first[j], second[j]], axis=1)
-        stress.append(corner_stress(flat, normal[:, j], weight @ flat))
-    pairs = [(min(pair), max(pair)) for pair in bodies.tolist()]
-    sides = [1.0 if a <= b else -1.0 for a, b in bodies.tolist()]
-    return Thrust(_shared(run, [*pairs], sides, normal), place, np.concatenate(stress, axis=1))
+    one, sides = model.assembly, model.sides
+    low, arm = sides.min(axis=1), run.contact_arm
+    place = run.place[:, low] + np.einsum("tnxy,tny->tnx", run.turn[:, low], arm)
+    drawn = model.bodies().centroid[low] + arm
+    stress = []
+    for j, (corners, first, second) in enumerate(zip(one.polygon, *one.tangents, strict=True)):
+        tangents, middle = np.column_stack([first, second]), corners.mean(axis=0)
+        stress.append(corner_stress((corners - middle) @ tangents, run.contact_normal[:, j], (drawn[:, j] - middle) @ tangents))
+    force = np.where(sides[:, :1] == low[:, None], 1.0, -1.0) * run.contact_force
+    return Thrust(force, place, np.concatenate(stress, axis=1))
 
 
 def corner_stress(corners: np.ndarray, force: np.ndarray, centre: np.ndarray) -> np.ndarray:

@@ -72,6 +72,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
     result = Result("dem")
     result.results = out.DemTilt(
         **numbers_of_tilt(options, model, found),
+        **measures.water_force(model),
         load_direction="+x",
         hinges=found_hinges,
         hinges_opposite=back_hinges,
@@ -95,6 +96,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         "snapshot_time": Array(last.time[[at, -1]], ("snapshot",), "s"),
         **segment_arrays(model.ties, 2),
         **measures.support_arrays(model),
+        **measures.water_arrays(model),
     }
     result.answer = tilt_answer(result.results)
     return result

@@ -113,6 +113,7 @@ class Trial:
     def __init__(self, context: Context, options: Dem, model: Model, begin: Begin | None = None):
         self.model = model
         self.begin = begin
+        self.places = options.thrust
         self.starts = begin.time if begin else 0.0
         self.moves = () if begin else _moves(context, model)  # a rocking structure feels them as motion of its ground
         self.options = core_options(context, options, model, self.starts, farthest_move(self.moves, 2))
@@ -144,4 +145,5 @@ class Trial:
             )
             for k, v in enumerate(values)
         ]
-        return Runs([self.model.bodies(v) for v in values], tasks)
+        drawn = self.model.drawn() if self.places else None
+        return Runs([replace(self.model.bodies(v), drawn=drawn) for v in values], tasks)

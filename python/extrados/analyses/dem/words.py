@@ -78,13 +78,24 @@ def supports_answer(far: float, lift: float, weight: float, work: float | None) 
     return f"{told}."
 
 
+def _wet(r: DemRun | DemTilt) -> str:
+    """The force of the water, if any."""
+    if not r.water_force_N:
+        return ""
+    across, up = r.water_force_N
+    return (
+        f" Water presses on the blocks with {three_figures(1e-3 * abs(across))} kN towards {'+x' if across >= 0.0 else '-x'} and "
+        f"{three_figures(1e-3 * abs(up))} kN {'upward' if up >= 0.0 else 'downward'}."
+    )
+
+
 def motion_answer(r: DemRun, idle: bool) -> str:
     """The answer of a run under a motion; idle: nothing moves the ground."""
     if idle and r.outcome == "at-rest":
-        return "The structure stands under its own weight. No motion acts on it."
+        return f"The structure stands under its own weight. No motion acts on it.{_wet(r)}"
     turn = max(r.peak_rotation_rad.items(), key=lambda item: abs(item[1]), default=("", 0.0))
     first, audit = _fate(r, "joint"), _audit(r)
-    return f"{first}; {_moved(turn[0], abs(turn[1]), r.peak_slip_m)}, {r.bounces} bounces; {audit}.{_tied(r.ties)}"
+    return f"{first}; {_moved(turn[0], abs(turn[1]), r.peak_slip_m)}, {r.bounces} bounces; {audit}.{_tied(r.ties)}{_wet(r)}"
 
 
 def tilt_answer(r: DemTilt) -> str:
@@ -96,7 +107,7 @@ def tilt_answer(r: DemTilt) -> str:
         (
             f"Collapse under a constant horizontal acceleration of {collapse:.4f} g towards +x (a tilt of {r.tilt_angle_deg:.2f} "
             f"deg), and of {back:.4f} g towards -x. The lower value is {least:.4f} g, towards {sense}. Hinges at "
-            f"collapse towards +x: {where}.{_tied(r.ties)}"
+            f"collapse towards +x: {where}.{_tied(r.ties)}{_wet(r)}"
         )
         + (f" {ONE_PATH}" if r.interval else "")
         + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")

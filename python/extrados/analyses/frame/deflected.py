@@ -17,7 +17,8 @@ from extrados.analyses.context import Refused
 from extrados.core.errors import Cancelled, CoreError
 from extrados.core.frame import UNLIMITED, Frame, MacroElement
 from extrados.limit.errors import CannotStand
-from extrados.model.structures.plan import MEETS, Plan, PlanWall
+from extrados.model.structures.plan import Plan
+from extrados.model.structures.plan_parts import MEETS, PlanWall
 from extrados.results.frame import WallDeflection
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building

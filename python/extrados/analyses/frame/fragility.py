@@ -215,10 +215,7 @@ def run(context: Context, options: FrameFragility) -> Result:
 
 def _stopped(swept: Swept, result: Result) -> bool:
     """Whether nothing can be made of the finished members; why some are missing."""
-    if swept.interrupted:
-        result.status, result.reason = "interrupted", swept.stopped
-    elif swept.stopped:
-        result.status, result.reason = "failed", swept.stopped
+    result.status, result.reason = swept.status, swept.stopped
     if not swept.finished:
         result.answer = "No member is finished."
     return not swept.finished

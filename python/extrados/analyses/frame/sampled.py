@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.stats import norm, qmc
 
 from extrados.analyses.context import Refused
 from extrados.analyses.frame.tables import MASONRY, OPTIONS
+from extrados.analyses.statistics.uncertain import factors_of, sobol_draws
 from extrados.model.properties import Material
 from extrados.model.structures.plan import Plan
 from extrados.views.building import Building
@@ -31,10 +31,7 @@ class Sample:
 
     def factors(self, k: int) -> dict[str, float]:
         """Name -> factor of building k."""
-        names = sorted(self.uncertain)
-        spread = np.sqrt(np.log1p(np.array([self.uncertain[name] for name in names]) ** 2))
-        draw = np.clip(self.draws[k % len(self.draws)], 1e-12, 1.0 - 1e-12)
-        return dict(zip(names, np.exp(spread * norm.ppf(draw) - 0.5 * spread**2).tolist(), strict=True))
+        return factors_of(self.uncertain, self.draws[k % len(self.draws)])[0]
 
     def frame(self, k: int) -> EquivalentFrame:
         """The frame of building k."""
@@ -46,9 +43,7 @@ def sample_of(building: Building, options: FrameOptions, uncertain: dict[str, fl
     building = building.apart()
     if not uncertain:
         return Sample(building, options, {}, np.zeros((1, 0)))
-    power = max(1, int(np.ceil(np.log2(count))))
-    draws = qmc.Sobol(len(uncertain), scramble=True, seed=seed).random_base2(power)[:count]
-    return Sample(building, options, uncertain, draws)
+    return Sample(building, options, uncertain, sobol_draws(len(uncertain), count, seed))
 
 
 def varied(building: Building, options: FrameOptions, factors: Mapping[str, float]) -> EquivalentFrame:

@@ -16,7 +16,8 @@ from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquil
 from extrados.model.errors import WHOLE
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.deviation import resurveyed
-from extrados.results import limit as out
+from extrados.results import sweeps as out
+from extrados.results.limit import DILATANT
 from extrados.results.model import Array, Result, TableData
 from extrados.views.building import Building
 
@@ -142,7 +143,7 @@ def run(context: Context, options: Imperfections) -> Result:
     if fallen:
         result.answer += f" {fallen} of them cannot stand."
     if r.upper_bounds:
-        result.answer += f" In {r.upper_bounds} geometries, joints slide; the capacity is then an {out.DILATANT}."
+        result.answer += f" In {r.upper_bounds} geometries, joints slide; the capacity is then an {DILATANT}."
     if given < low:
         result.warnings.append(
             f"The capacity of the given geometry, {given:.4f} g, is below the range of the random geometries. In a bond, several "

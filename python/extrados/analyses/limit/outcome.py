@@ -9,7 +9,7 @@ import numpy as np
 from extrados.analyses.batches import Swept
 from extrados.limit.programme import Mechanism
 from extrados.model.geometry.assembly import Assembly
-from extrados.results import limit as out
+from extrados.results.sweeps import SectionStatus
 
 if TYPE_CHECKING:
     from extrados.limit.solids import Programme
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 Signature = tuple[tuple[str, str], ...]
 #: Stands for a structure that no load of the kind brings down
 LOCKED: Signature = (("all", "locked"),)
+#: Stands for a structure without geometry, or whose capacity is not found; one that cannot stand has no marks
+UNKNOWN: Signature = (("all", "unknown"),)
 #: Marks the blocks that move in a mechanism of solids, in words
 MOVES = "m"
 
@@ -41,7 +43,7 @@ class Outcome:
     alone: float | None = None  # of the leeward buttress by itself
 
     @property
-    def status(self) -> out.SectionStatus:
+    def status(self) -> SectionStatus:
         """Whether it has a capacity, cannot stand, is locked, or has no answer."""
         if self.locked:
             return "locked"

@@ -6,7 +6,7 @@ import numpy as np
 
 from extrados.analyses.batches import stacked
 from extrados.analyses.context import Refused
-from extrados.analyses.limit.outcome import LOCKED, MOVES, Outcome, Signature, measures_of
+from extrados.analyses.limit.outcome import LOCKED, MOVES, UNKNOWN, Outcome, Signature, measures_of
 from extrados.analyses.limit.solid_loads import solid_limit
 from extrados.analyses.limit.solid_sliding import slide
 from extrados.analyses.limit.solids import dilating_contacts, moving_blocks
@@ -26,7 +26,7 @@ def evaluate_solids(building: Building, options: SpatialLimit) -> Outcome:
     try:
         limit = solid_limit(building, options)
     except (BadGeometry, Refused, ValueError) as error:
-        return Outcome(reason=str(error))
+        return Outcome(signature=UNKNOWN, reason=str(error))
     assembly, direction = limit.assembly, options.direction or 0.0
     measures = measures_of(assembly)
     try:
@@ -34,7 +34,7 @@ def evaluate_solids(building: Building, options: SpatialLimit) -> Outcome:
     except Immovable as error:
         return Outcome(signature=LOCKED, reason=f"no collapse mechanism: {error}", assembly=assembly, locked=True, measures=measures)
     except NoAnswer as error:
-        return Outcome(reason=str(error), assembly=assembly, measures=measures)
+        return Outcome(signature=UNKNOWN, reason=str(error), assembly=assembly, measures=measures)
     if isinstance(found, Falls) or found.gamma <= 0.0 or limit.falls() is not None:  # or only when it is pushed
         proof = "cannot stand: a mechanism exists that no contact hinders and in which the weights do positive work"
         return Outcome(0.0, reason=proof, assembly=assembly, measures=measures)

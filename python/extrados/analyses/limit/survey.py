@@ -14,7 +14,8 @@ from extrados.analyses.limit.outcome import Outcome, outcomes_of
 from extrados.analyses.limit.tables import Survey
 from extrados.analyses.limit.variation import evaluate, spoken
 from extrados.model.errors import BadGeometry
-from extrados.results import limit as out
+from extrados.results import sweeps as out
+from extrados.results.limit import DILATANT
 from extrados.results.model import Array, Result, TableData
 from extrados.views.building import Building
 
@@ -125,6 +126,6 @@ def run(context: Context, options: Survey) -> Result:
         )
     text += f". {len(without)} have no result." if without else "."
     if r.upper_bounds:
-        text += f" In {r.upper_bounds} sections, joints slide; the capacity is then an {out.DILATANT}."
+        text += f" In {r.upper_bounds} sections, joints slide; the capacity is then an {DILATANT}."
     result.answer = text + (" survey.csv gives the reasons." if fallen or without else "")
     return result

@@ -12,7 +12,7 @@ from extrados.analyses.changes import changed, read_table
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import values_of
 from extrados.analyses.limit.common import packed
-from extrados.analyses.limit.outcome import LOCKED, Outcome, Signature, outcomes_of
+from extrados.analyses.limit.outcome import LOCKED, UNKNOWN, Outcome, Signature, outcomes_of
 from extrados.analyses.limit.tables import Sweep
 from extrados.analyses.limit.variation import evaluate, spoken
 from extrados.analyses.needs import in_space
@@ -22,7 +22,8 @@ from extrados.limit.programme import Mechanism
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.solids.assembly import SolidAssembly
-from extrados.results import limit as out
+from extrados.results import sweeps as out
+from extrados.results.limit import DILATANT
 from extrados.results.model import Array, Result, TableData
 from extrados.views.building import Building
 
@@ -60,7 +61,7 @@ class Range:
             else:
                 table = read_table(type(own), data)
         except BadGeometry as error:
-            return Outcome(reason=str(error))
+            return Outcome(signature=UNKNOWN, reason=str(error))
         return evaluate(
             self.building.apart().having(**{self.table: table}),
             self.options,
@@ -102,11 +103,11 @@ def run(context: Context, options: Sweep) -> Result:
         [(v, o.signature) for v, o in zip(values, outcomes, strict=True)] + [(c["value"], c["after"]) for c in changes],
         key=lambda pair: pair[0],
     ):
-        if signature and signature != LOCKED:
+        if signature and signature not in (LOCKED, UNKNOWN):
             numbers.setdefault(signature, len(numbers) + 1)
     best, best_gamma = _optimum(context, ask, values, outcomes, locate)
     result = Result("sweep")
-    stable = [c for c in changes if not c["before"] or not c["after"]]
+    stable = [c for c in changes if () in (both := (c["before"], c["after"])) and UNKNOWN not in both]
     locks = [c["value"] for c in changes if LOCKED in (c["before"], c["after"])]
     r = out.Sweep(
         vary=options.vary,
@@ -218,7 +219,7 @@ class Between:
                     before = middle
                 else:
                     after = middle
-            gamma = before.gamma if before.signature else after.gamma
+            gamma = before.gamma if before.signature not in ((), UNKNOWN) else after.gamma
             found.append({"value": after.value, "before": before.signature, "after": after.signature, "gamma": gamma})
             low = after
         return found
@@ -376,5 +377,5 @@ def _words(options: Sweep, r: out.Sweep, located: bool) -> str:
     if counts["no-answer"]:
         text += f" {counts['no-answer']} of {len(r.values)} values have no result."
     if r.upper_bound_values:
-        text += f" For {len(r.upper_bound_values)} of the {len(r.values)} values, joints slide; the capacity is then an {out.DILATANT}."
+        text += f" For {len(r.upper_bound_values)} of the {len(r.values)} values, joints slide; the capacity is then an {DILATANT}."
     return text

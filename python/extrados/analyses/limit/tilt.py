@@ -1,6 +1,7 @@
 """tilt: the horizontal acceleration at which a structure becomes a mechanism (thesis chapter 3)."""
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from extrados.analyses.limit.common import (
     tie_arrays,
     tie_rows,
 )
-from extrados.analyses.limit.paths import doubt, follow_paths
+from extrados.analyses.limit.paths import doubt, follow_beside, follow_paths
 from extrados.analyses.limit.tables import Tilt
 from extrados.analyses.needs import in_space
 from extrados.limit.answer import CENTRAL, Answer
@@ -42,6 +43,8 @@ from extrados.views.building import Building
 __all__ = ["geometry_arrays", "run", "state_arrays"]
 
 FILM = 90  # tilts of an animation
+
+Paths = tuple[list[out.LoadPath], list[tuple[State, Mechanism]]]  # of one push, and the certified collapses at their ends
 
 MOST_FOLLOWED = 80  # joints up to which load paths are followed beside an upper bound: some seconds
 MOST_NAMED = 6  # hinges and sliding joints told in words
@@ -196,6 +199,9 @@ def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, d
     if limit.associated and limit.friction is not None:
         told |= {"dilating_joints": dilating[1], "dilating_joints_opposite": dilating[-1]}
     beside = limit.without_dilatancy() if limit.associated and any(dilating.values()) else limit
+    followed: dict[int, Paths] = {}
+    if not limit.associated and limit.strength is None:
+        followed |= _paths(context, limit, [d for d in (1, -1) if limit.coulomb[d].falling is None], patient=True)
     for direction, end in ((1, ""), (-1, "_opposite")):
         try:
             if not limit.associated:
@@ -220,7 +226,9 @@ def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, d
                 'paths, give friction_rule = "non-associated".'
             )
         elif beside.coulomb[direction].falling is None:
-            paths, ends = _paths(context, beside, direction, patient=not limit.associated)
+            if direction not in followed:
+                followed |= _paths(context, beside, [direction], patient=False)
+            paths, ends = followed[direction]
             lowest = min(ends, key=lambda one: direction * one[0].gamma, default=pair)
             if direction * (pair[0].gamma - lowest[0].gamma) > out.SAME:
                 pair = lowest  # below the states that the programmes found
@@ -270,23 +278,27 @@ def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, d
     return told
 
 
-def _paths(
-    context: Context, limit: LimitAnalysis, direction: int, *, patient: bool
-) -> tuple[list[out.LoadPath], list[tuple[State, Mechanism]]]:
-    """The load paths to +x (1) or to -x (-1), and the certified collapses at their ends."""
-    ends = []
-    before = 0 if direction > 0 else len(RATIOS)
+def _paths(context: Context, limit: LimitAnalysis, directions: Sequence[int], *, patient: bool) -> dict[int, Paths]:
+    """The load paths to +x (1) and to -x (-1), and the certified collapses at their ends."""
+    ends: dict[int, dict[float, tuple[State, Mechanism]]] = {direction: {} for direction in directions}
 
-    def follow(ratio: float, effort: int) -> tuple[float, Certificate]:
-        context.progress(before + RATIOS.index(ratio), 2 * len(RATIOS), "load paths")
+    def follow(direction: int, ratio: float, effort: int) -> tuple[float, Certificate]:
         state, mechanism = collapse_along_path(limit, direction, ratio, effort)
         assert limit.friction is not None  # joints that cannot slide need no such state
         proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, None)
         if proof.holds(state.gamma):
-            ends.append((state, mechanism))
+            ends[direction][ratio] = state, mechanism
         return direction * state.gamma, proof
 
-    return follow_paths(follow, patient=patient), ends
+    pushes = [partial(follow, direction) for direction in directions]
+    if patient:
+        rows = follow_beside(pushes, context.threads, lambda done, of: context.progress(done, of, "load paths"))
+    else:
+        rows = [follow_paths(push, patient=False) for push in pushes]
+    return {
+        direction: (found, [ends[direction][ratio] for ratio in RATIOS if ratio in ends[direction]])
+        for direction, found in zip(directions, rows, strict=True)
+    }
 
 
 def _fracture(building: Building, options: Tilt, answer: Answer, result: Result) -> Keys:

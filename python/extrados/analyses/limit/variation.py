@@ -6,7 +6,7 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import fracture_of, limit_of
-from extrados.analyses.limit.outcome import LOCKED, MOVES, Outcome, Signature, measures_of
+from extrados.analyses.limit.outcome import LOCKED, MOVES, UNKNOWN, Outcome, Signature, measures_of
 from extrados.analyses.limit.solid_variation import evaluate_solids
 from extrados.analyses.limit.tables import LimitAnalysisTable, SpatialLimit
 from extrados.analyses.needs import in_space
@@ -38,6 +38,8 @@ def spoken(found: Signature) -> str:
     """A signature in words."""
     if found == LOCKED:
         return "none: no collapse mechanism exists"
+    if found == UNKNOWN:
+        return ""
     words = {"i": "intrados", "e": "extrados", "s": "slide"}
     return "; ".join(name if marks == MOVES else f"{name}: {'-'.join(words[m] for m in marks.split('-'))}" for name, marks in found)
 
@@ -51,7 +53,7 @@ def evaluate(
             return evaluate_solids(building, options)
         assembly, limit = building.blocks(), limit_of(building, options)
     except (BadGeometry, Refused, ValueError) as error:
-        return Outcome(reason=str(error))
+        return Outcome(signature=UNKNOWN, reason=str(error))
     found = _evaluate(building, options, assembly, limit, fracture, explain)
     return replace(found, alone=_buttress_alone(building, assembly)) if alone else found
 
@@ -97,7 +99,7 @@ def _evaluate(
             return Outcome(reason=str(error), assembly=assembly, measures=measures_of(assembly))
         return Outcome(0.0, reason=reason, assembly=assembly, measures=measures_of(assembly))
     except NoAnswer as error:
-        return Outcome(reason=str(error), assembly=assembly, measures=measures_of(assembly))
+        return Outcome(signature=UNKNOWN, reason=str(error), assembly=assembly, measures=measures_of(assembly))
     cracked, notes = None, []
     if fracture:
         try:

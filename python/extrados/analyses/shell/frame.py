@@ -10,7 +10,8 @@ from extrados.analyses.context import Refused
 from extrados.analyses.shell.model import ShellModel
 from extrados.analyses.shell.sections import sections_at
 from extrados.analyses.shell.tables import FrameRules
-from extrados.model.structures.plan import Plan, PlanWall
+from extrados.model.structures.plan import Plan
+from extrados.model.structures.plan_parts import PlanWall
 
 #: Walls that make a greater angle with the push than this cosine says are left out
 ALONG = 0.1

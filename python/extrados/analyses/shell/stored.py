@@ -15,8 +15,8 @@ AXES = {"xyz": "its position", "x_axis": "x axis of its element (unit vector)", 
 PLACES = {
     "part": "number of its part, among the parts that resist bending, counted from 0",
     "wall": "number of the wall, counted from 0; -1: none",
-    "s": "distance along the wall from its start",
-    "z": "height",
+    "s": "distance along the wall from its start; without a wall: x",
+    "z": "height; without a wall: y",
     "storey": "number of the storey, counted from 1",
     "element": "number of its element in these parts, counted from 0",
 }

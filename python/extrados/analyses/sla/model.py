@@ -372,7 +372,7 @@ def loads_of(mesh: Mesh, options: Sla) -> tuple[list[Load], list[Load]]:
 def crack_bands(mesh: Mesh, group: ElementGroup, options: Sla) -> tuple[np.ndarray, np.ndarray | None]:
     """h of each element [m], and (elements, 2) its least and greatest where it follows from the crack's direction.
 
-    The thickness of a row along a joint; or given; or the width of a linear element across the crack
+    The thickness of a row along a joint; or given; or the width or the extent of a linear element across the crack
     (fortran/sla/plane_points.f90), that of a mean direction for what crushes; or by the area: sqrt(2 A) of linear elements,
     sqrt(A) of quadratic ones, in which cracks keep to a part of the element.
     """
@@ -394,6 +394,12 @@ def bands_of(xy: np.ndarray, kind: str, connect: np.ndarray, options: CrackOptio
     if kind == "T3":
         longest = np.hypot(*np.moveaxis(np.roll(c, -1, axis=1) - c, 2, 0)).max(axis=1)
         return np.sqrt(2.0 * area), np.column_stack([2.0 * area / longest, longest])
+    if options.crack_band_rule == "extent":
+        # least across a side, greatest between two corners
+        side, apart = np.roll(c, -1, axis=1) - c, c[:, :, None] - c[:, None]
+        far = np.abs(side[:, :, None, 0] * apart[..., 1] - side[:, :, None, 1] * apart[..., 0]).max(axis=2)
+        least = (far / np.hypot(*np.moveaxis(side, 2, 0))).min(axis=1)
+        return np.sqrt(area), np.column_stack([least, np.hypot(*np.moveaxis(apart, 3, 0)).max(axis=(1, 2))])
     one, two = c[:, 2] - c[:, 0], c[:, 3] - c[:, 1]
     across = np.maximum(np.hypot(*(one + two).T), np.hypot(*(one - two).T))
     return np.sqrt(area), np.column_stack([2.0 * area / across, np.maximum(np.hypot(*one.T), np.hypot(*two.T))])

@@ -214,7 +214,7 @@ def job_of(context: Context, options: Fragility, base: Rocker, duration: float |
 
 
 def _describe(context: Context, options: Fragility, base: Rocker, job: EnsembleJob, swept: Swept, motions: int, result: Result) -> None:
-    _stopped(swept, result)
+    result.status, result.reason = swept.status, swept.stopped
     if not swept.finished:
         result.answer = "No member is finished."
         return
@@ -506,13 +506,6 @@ def _tell_failures(job: EnsembleJob, swept: Swept, per_motion: int, result: Resu
         result.warnings.append(f"in total, {count} runs have no result, see ensemble.csv")
 
 
-def _stopped(swept: Swept, result: Result) -> None:
-    if swept.interrupted:
-        result.status, result.reason = "interrupted", swept.stopped
-    elif swept.stopped:
-        result.status, result.reason = "failed", swept.stopped
-
-
 def _tables(job: EnsembleJob, swept: Swept, per_motion: int, options: Fragility, result: Result) -> None:
     units = {"pga": "g", "pgv": "m/s", "arias": "m/s", "peak_rotation": "rad", "stop_time": "s"}
     if options.cloud:
@@ -562,7 +555,7 @@ def _column(swept: Swept, name: str) -> Iterator[np.ndarray]:
 
 def _describe_durations(options: Fragility, base: Rocker, parts: list[tuple[float, Swept]], result: Result) -> None:
     """Mean and deviation of the peak rotation against the duration (Fig. 6-8)."""
-    _stopped(parts[-1][1], result)
+    result.status, result.reason = parts[-1][1].status, parts[-1][1].stopped
     initial = base.initial_ratio
     parts = [(d, s) for d, s in parts if len(s.members)]
     rows = [shares(s["outcome"], s["peak_ratio"], options.confidence, initial) for _, s in parts]

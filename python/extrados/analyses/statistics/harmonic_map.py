@@ -43,9 +43,8 @@ def run(context: Context, options: HarmonicMap) -> Result:
         astray=astray_of(model),
     )
     swept = sweep(context, "harmonic-map", job, len(motion), "harmonic map")
-    result = Result("harmonic-map")
+    result = Result("harmonic-map", swept.status, swept.stopped)
     if not swept.complete:
-        result.status, result.reason = ("interrupted" if swept.interrupted else "failed"), swept.stopped
         return result
     shape = (len(frequency), len(amplitude))
     outcome = swept["outcome"].copy()

@@ -56,9 +56,8 @@ def run(context: Context, options: RockingSpectrum) -> Result:
 
     job = job_of([one.body for one in rockers])
     swept = sweep(context, "rocking-spectrum", job, n, "rocking spectrum")
-    result = Result("rocking-spectrum")
+    result = Result("rocking-spectrum", swept.status, swept.stopped)
     if not swept.complete:
-        result.status, result.reason = ("interrupted" if swept.interrupted else "failed"), swept.stopped
         return result
     shape = (len(family), len(periods))
     overturned = swept["outcome"].reshape(shape) == COLLAPSE

@@ -19,7 +19,8 @@ from extrados.explore.answers.decks import open_deck
 from extrados.explore.desk import Desk
 from extrados.explore.frames import Reply
 from extrados.explore.messages import TOLD, BadMessage, Message, numbers
-from extrados.model.structures.plan import Plan, PlanWall
+from extrados.model.structures.plan import Plan
+from extrados.model.structures.plan_parts import PlanWall
 
 #: Walls and openings of a plan, storeys of a drawn one, characters of a name
 MOST_WALLS, MOST_OPENINGS, MOST_STOREYS, LONGEST_NAME = 200, 200, 10, 40

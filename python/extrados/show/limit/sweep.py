@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from extrados.results.limit import Imperfections, Sweep
 from extrados.results.store import Stored
+from extrados.results.sweeps import Imperfections, Sweep
 from extrados.show import solids, style
 from extrados.show.limit import section
 

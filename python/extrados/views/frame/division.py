@@ -5,7 +5,8 @@ import itertools
 import numpy as np
 
 from extrados.model.errors import BadGeometry
-from extrados.model.structures.plan import MEETS, Plan, PlanWall, WallOpening
+from extrados.model.structures.plan import Plan
+from extrados.model.structures.plan_parts import MEETS, PlanWall, WallOpening
 from extrados.views.frame.frame import Node, Strip
 from extrados.views.frame.options import FrameOptions
 from extrados.views.frame.rules import Side, deformable

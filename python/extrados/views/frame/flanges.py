@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from extrados.model.structures.plan import MEETS, Plan
+from extrados.model.structures.plan import Plan
+from extrados.model.structures.plan_parts import MEETS
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,8 @@ from extrados.model.description import Description
 from extrados.model.errors import BadGeometry, blaming
 from extrados.model.geometry.polygons import signed_area
 from extrados.model.properties import Material
-from extrados.model.structures.plan import DEEPEST_AXIS, MEETS, PARALLEL, Plan, PlanWall, Rod, StoreyFloor, meeting, nearly_meeting
+from extrados.model.structures.plan import DEEPEST_AXIS, Plan
+from extrados.model.structures.plan_parts import MEETS, PARALLEL, PlanWall, Rod, StoreyFloor, meeting, nearly_meeting
 from extrados.schema.constants import GRAVITY
 from extrados.views.frame.division import Division, parts_around_openings
 from extrados.views.frame.flanges import Flange, effective_part

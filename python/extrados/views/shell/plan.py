@@ -8,7 +8,8 @@ import numpy as np
 
 from extrados.model.description import Description
 from extrados.model.errors import BadGeometry, blaming
-from extrados.model.structures.plan import MEETS, Plan, Prestress, Rod, meeting, nearly_meeting
+from extrados.model.structures.plan import Plan
+from extrados.model.structures.plan_parts import MEETS, Prestress, Rod, meeting, nearly_meeting
 from extrados.views.mesh.options import LARGEST_MESH
 from extrados.views.shell.mesh import Foot, ShellBar, ShellJoint, ShellMesh, ShellPart, WallPlane, pieces
 from extrados.views.shell.options import ShellOptions

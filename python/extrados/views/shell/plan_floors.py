@@ -7,7 +7,8 @@ import numpy as np
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.polygons import signed_area
 from extrados.model.properties import Material
-from extrados.model.structures.plan import MEETS, Plan, StoreyFloor
+from extrados.model.structures.plan import Plan
+from extrados.model.structures.plan_parts import MEETS, StoreyFloor
 from extrados.schema.constants import GRAVITY
 from extrados.views.mesh.triangles import fill_ring
 from extrados.views.shell.mesh import ShellBar, ShellJoint, ShellPart

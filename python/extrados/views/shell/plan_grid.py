@@ -6,7 +6,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from extrados.model.errors import BadGeometry
-from extrados.model.structures.plan import MEETS, Plan, PlanWall, RingBeam
+from extrados.model.structures.plan import Plan
+from extrados.model.structures.plan_parts import MEETS, PlanWall, RingBeam
 
 #: A warning is given if two mesh lines are closer than this fraction of the element size
 SLIVER = 0.2

@@ -8,7 +8,8 @@ import numpy as np
 from extrados.model.description import Description
 from extrados.model.errors import BadGeometry
 from extrados.model.properties import NO_SLIDING
-from extrados.model.structures.plan import MEETS, Corner, Plan, PlanWall, Seat
+from extrados.model.structures.plan import Plan
+from extrados.model.structures.plan_parts import MEETS, Corner, PlanWall, Seat
 from extrados.views.shell.mesh import ShellJoint, ShellPart
 from extrados.views.shell.plan_grid import WallGrid, thickness_at
 
