@@ -598,12 +598,17 @@ contains
       call pairs%make(n, status)
       allocate (before(n), stat=info)
       if (info /= 0) status = status_out_of_memory
+      ! The state of the damage so far, which no extrapolated displacements change
+      if (status == status_ok) call frozen_solution(model, length, status)
       if (status /= status_ok) return
+      carried = .not. has_run_away(model, length)
+      if (.not. carried) return
+      call update_all(model, lost)
       associate (path => model%path, z => model%solution%z, force => model%solution%force)
          call evaluate(model, by_secant, .true., energy, scale)
          do iterations = 1, most_loops
             path%residual = residual_of(model, scale)
-            found = path%residual < staggered_tolerance .and. iterations > 1
+            found = path%residual < staggered_tolerance
             if (found) return
             if (iterations == next_try) then
                next_try = 2 * next_try
@@ -624,10 +629,6 @@ contains
             end if
             part = 1.0_wp
             call move(model, part)
-            if (iterations == 1) then        ! to the control's value
-               call evaluate(model, by_secant, .true., energy, scale)
-               cycle
-            end if
             call search_way(model, work, part, scale)
             carried = .not. has_run_away(model, length)
             if (.not. carried) return
