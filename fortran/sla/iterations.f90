@@ -50,6 +50,8 @@ module sla_iterations
    real(wp), parameter :: most_driving = 0.7_wp, most_opposing = 0.1_wp, longer(2) = [1.5_wp, 2.0_wp], shorter = 0.1_wp, &
       longest_way = 4.0_wp
    integer, parameter :: most_searches = 6
+   !> Energy that the error of the trapezium rule may take in a step of descent, over the greatest stored
+   real(wp), parameter :: most_taken = 2.0e-3_wp
    !> Loop of a staggered step after which Newton's method tries first, and then each time twice as many later
    integer, parameter :: first_try = 4
    !> Vectors of the solution with sliding friction, and the part of the right side that may be left
@@ -120,6 +122,7 @@ contains
          if (.not. model%path%snaps) then
             call predict(model, length, status)
             if (status == status_ok) call newton_step(model, length, iterations, found, status)
+            if (found) found = .not. has_run_away(model, length)
             if (found .and. model%path%by_energy) found = dissipation(model) <= snap_part * model%path%most_stored
          end if
          if (status == status_ok .and. .not. found .and. model%path%by_energy .and. .not. is_driven(model)) then
@@ -134,11 +137,54 @@ contains
             call staggered_step(model, length, iterations, found, carried, lost, status)
          else if (status == status_ok) then
             call descent_step(model, length, iterations, found, carried, lost, status)
+            if (found) found = takes_no_energy(model, length, lost)
+            if (status == status_ok .and. carried .and. .not. found) then
+               ! Damage that went ahead of the forces costs more than their work: the slow way, from the last state
+               call restore_histories(model)
+               lost = 0.0_wp
+               call predict(model, length, status)
+               if (status == status_ok) call staggered_step(model, length, iterations, found, carried, lost, status)
+            end if
          end if
          if (.not. found) code = code_unbalanced
       end if
       if (status == status_ok .and. carried) call update_all(model, lost)
    end subroutine implicit_step
+
+   !> Is what the step has lost and stored no more than the work of its loads, but for the error of the trapezium rule?
+   function takes_no_energy(model, length, lost) result(yes)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: length           !! of the control [J]
+      real(wp), intent(in) :: lost             !! [J]
+      logical :: yes
+      real(wp) :: energy, scale, was, force, work
+      integer :: n, m
+      n = model%mesh%equations
+      m = size(model%support%moved, 1)
+      call evaluate(model, by_secant, .false., energy, scale)
+      associate (path => model%path)
+         was = path%lambda_now
+         force = path%lambda
+         if (is_driven(model)) then
+            was = path%force
+            force = dot_product(model%solution%force(n + 1:n + m), model%support%moved(:, 2))
+         end if
+         work = 0.5_wp * (was + force) * length + dot_product(model%load%fa, path%u(0:n)) - path%constant
+         yes = energy - path%stored + lost - work <= most_taken * max(path%most_stored, energy)
+      end associate
+   end function takes_no_energy
+
+   !> Those of the last state
+   subroutine restore_histories(model)
+      type(element_model), intent(inout) :: model
+      integer :: g
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (history_group)
+            call group%restore()
+         end select
+      end do
+   end subroutine restore_histories
 
    !> Newton's method with a prescribed dissipation, less and less where it does not converge
    subroutine arc_step(model, length, iterations, found, status)
@@ -182,15 +228,9 @@ contains
    function dissipated_by_damage(model) result(lost)
       type(element_model), intent(inout) :: model
       real(wp) :: lost
-      integer :: g
       lost = 0.0_wp
       call update_all(model, lost)
-      do g = 1, size(model%mesh%holders)
-         select type (group => model%mesh%holders(g)%group)
-         class is (history_group)
-            call group%restore()
-         end select
-      end do
+      call restore_histories(model)
    end function dissipated_by_damage
 
    !> Energy that the step so far dissipates where points unload to the origin [J]
