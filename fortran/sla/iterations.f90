@@ -44,10 +44,14 @@ module sla_iterations
    integer, parameter :: most_newton = 12, most_loops = 300, most_inner = 40, most_halvings = 4
    !> Iterations in which Newton's method must halve the residual
    integer, parameter :: most_vain = 4
-   !> Work of the forces out of balance at the end of a way over that at its start, at most; trials to find such an end, the
-   !> factors by which one is longer and shorter than the last, and the longest way
-   real(wp), parameter :: most_work = 0.7_wp, longer(2) = [1.5_wp, 4.0_wp], shorter = 0.1_wp, longest_way = 16.0_wp
+   !> Work of the forces out of balance at the end of a way over that at its start, at most: where they still drive it, and where
+   !> they oppose it, as damage that goes too far stays; factors by which a way is longer and shorter than the last one tried,
+   !> the longest way, and the trials
+   real(wp), parameter :: most_driving = 0.7_wp, most_opposing = 0.1_wp, longer(2) = [1.5_wp, 2.0_wp], shorter = 0.1_wp, &
+      longest_way = 4.0_wp
    integer, parameter :: most_searches = 6
+   !> Energy that the error of the trapezium rule may take in a step of descent, over the greatest stored
+   real(wp), parameter :: most_taken = 2.0e-3_wp
    !> Loop of a staggered step after which Newton's method tries first, and then each time twice as many later
    integer, parameter :: first_try = 4
    !> Vectors of the solution with sliding friction, and the part of the right side that may be left
@@ -118,6 +122,7 @@ contains
          if (.not. model%path%snaps) then
             call predict(model, length, status)
             if (status == status_ok) call newton_step(model, length, iterations, found, status)
+            if (found) found = .not. has_run_away(model, length)
             if (found .and. model%path%by_energy) found = dissipation(model) <= snap_part * model%path%most_stored
          end if
          if (status == status_ok .and. .not. found .and. model%path%by_energy .and. .not. is_driven(model)) then
@@ -132,11 +137,54 @@ contains
             call staggered_step(model, length, iterations, found, carried, lost, status)
          else if (status == status_ok) then
             call descent_step(model, length, iterations, found, carried, lost, status)
+            if (found) found = takes_no_energy(model, length, lost)
+            if (status == status_ok .and. carried .and. .not. found) then
+               ! Damage that went ahead of the forces costs more than their work: the slow way, from the last state
+               call restore_histories(model)
+               lost = 0.0_wp
+               call predict(model, length, status)
+               if (status == status_ok) call staggered_step(model, length, iterations, found, carried, lost, status)
+            end if
          end if
          if (.not. found) code = code_unbalanced
       end if
       if (status == status_ok .and. carried) call update_all(model, lost)
    end subroutine implicit_step
+
+   !> Is what the step has lost and stored no more than the work of its loads, but for the error of the trapezium rule?
+   function takes_no_energy(model, length, lost) result(yes)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: length           !! of the control [J]
+      real(wp), intent(in) :: lost             !! [J]
+      logical :: yes
+      real(wp) :: energy, scale, was, force, work
+      integer :: n, m
+      n = model%mesh%equations
+      m = size(model%support%moved, 1)
+      call evaluate(model, by_secant, .false., energy, scale)
+      associate (path => model%path)
+         was = path%lambda_now
+         force = path%lambda
+         if (is_driven(model)) then
+            was = path%force
+            force = dot_product(model%solution%force(n + 1:n + m), model%support%moved(:, 2))
+         end if
+         work = 0.5_wp * (was + force) * length + dot_product(model%load%fa, path%u(0:n)) - path%constant
+         yes = energy - path%stored + lost - work <= most_taken * max(path%most_stored, energy)
+      end associate
+   end function takes_no_energy
+
+   !> Those of the last state
+   subroutine restore_histories(model)
+      type(element_model), intent(inout) :: model
+      integer :: g
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (history_group)
+            call group%restore()
+         end select
+      end do
+   end subroutine restore_histories
 
    !> Newton's method with a prescribed dissipation, less and less where it does not converge
    subroutine arc_step(model, length, iterations, found, status)
@@ -180,15 +228,9 @@ contains
    function dissipated_by_damage(model) result(lost)
       type(element_model), intent(inout) :: model
       real(wp) :: lost
-      integer :: g
       lost = 0.0_wp
       call update_all(model, lost)
-      do g = 1, size(model%mesh%holders)
-         select type (group => model%mesh%holders(g)%group)
-         class is (history_group)
-            call group%restore()
-         end select
-      end do
+      call restore_histories(model)
    end function dissipated_by_damage
 
    !> Energy that the step so far dissipates where points unload to the origin [J]
@@ -596,12 +638,17 @@ contains
       call pairs%make(n, status)
       allocate (before(n), stat=info)
       if (info /= 0) status = status_out_of_memory
+      ! The state of the damage so far, which no extrapolated displacements change
+      if (status == status_ok) call frozen_solution(model, length, status)
       if (status /= status_ok) return
+      carried = .not. has_run_away(model, length)
+      if (.not. carried) return
+      call update_all(model, lost)
       associate (path => model%path, z => model%solution%z, force => model%solution%force)
          call evaluate(model, by_secant, .true., energy, scale)
          do iterations = 1, most_loops
             path%residual = residual_of(model, scale)
-            found = path%residual < staggered_tolerance .and. iterations > 1
+            found = path%residual < staggered_tolerance
             if (found) return
             if (iterations == next_try) then
                next_try = 2 * next_try
@@ -622,10 +669,6 @@ contains
             end if
             part = 1.0_wp
             call move(model, part)
-            if (iterations == 1) then        ! to the control's value
-               call evaluate(model, by_secant, .true., energy, scale)
-               cycle
-            end if
             call search_way(model, work, part, scale)
             carried = .not. has_run_away(model, length)
             if (.not. carried) return
@@ -670,7 +713,7 @@ contains
       do trial = 1, most_searches
          call evaluate(model, by_secant, trial == 1, energy, scale)
          now = dot_product(model%solution%force(1:model%mesh%equations), model%solution%z(:, 1))
-         if (abs(now) <= -most_work * work .or. (now < 0.0_wp .and. part >= longest_way)) exit
+         if (now <= -most_opposing * work .and. (now >= most_driving * work .or. part >= longest_way)) exit
          if (now > 0.0_wp) then
             next = part * max(shorter, work / (work - now))
             if (part > 1.0_wp) next = max(1.0_wp, next)
