@@ -50,7 +50,7 @@ def run(
     from extrados.analyses.context import Context, default_threads
     from extrados.running.run import compute, run_to
 
-    context = Context(_checked(deck), threads or default_threads(), threads_given=threads is not None)
+    context = Context(_checked(deck), threads or default_threads(), threads_given=bool(threads))
     return compute(context) if out is None else run_to(context, out, figures)
 
 

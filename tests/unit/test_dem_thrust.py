@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.analyses.dem.thrust import corner_stress, edge_stress
+from extrados.analyses.dem.from_deck import make_model
+from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.thrust import Thrust, corner_stress, edge_stress, redundancy
+from extrados.decks.reader import make_deck
 from extrados.schema.constants import GRAVITY
 
 STILL = '[[analysis]]\nkind = "dem"\nthrust = true\nperturbed = false\nend_time = {end}\n'
@@ -75,9 +78,11 @@ def test_a_block_under_its_weight_and_a_moment(direction: str, tmp_path) -> None
     assert abs(place[0] - run.array("dem", "thrust_place")[0, 0, 0]) == pytest.approx(e, rel=0.01)
 
 
-def test_an_arch_at_rest_has_an_admissible_line_in_equilibrium(tmp_path) -> None:
+@pytest.mark.parametrize("stiffness", [1e9, 1e11])
+def test_an_arch_at_rest_has_an_admissible_line_in_equilibrium(stiffness: float, tmp_path) -> None:
     """The forces at their places are in equilibrium with the weight of each voussoir, and the horizontal thrust lies within the limits."""
-    text = '[structure]\nkind = "arch"\nradius = 10.0\nthickness = 1.5\nembrace = 157.5\nvoussoirs = 9\n[joints]\nnormal_stiffness = 1e9\n'
+    text = '[structure]\nkind = "arch"\nradius = 10.0\nthickness = 1.5\nembrace = 157.5\nvoussoirs = 9\n'
+    text += f"[joints]\nnormal_stiffness = {stiffness}\n"
     run = found(tmp_path, text + STILL.format(end=0.2) + '[[analysis]]\nkind = "tilt"\n')
     force, place = (run.array("dem", name)[-1] for name in ("thrust_force", "thrust_place"))
     a, b = run.array("dem", "joint_block").T
@@ -93,7 +98,7 @@ def test_an_arch_at_rest_has_an_admissible_line_in_equilibrium(tmp_path) -> None
     horizontal = np.abs(force[:, 0])
     least, most = (run["tilt"][name] for name in ("thrust_min_N", "thrust_max_N"))
     assert horizontal == pytest.approx(horizontal.mean(), rel=0.01)
-    assert least < horizontal.mean() < most
+    assert (least, horizontal.mean(), most) == pytest.approx((159e3, 185.0e3, 264e3), rel=5e-3)
 
 
 RIGID = 'solver = "nonsmooth"\n'
@@ -108,10 +113,10 @@ def test_a_block_on_rigid_contacts_under_its_weight_and_a_moment(direction: str,
     run = found(tmp_path, text + STILL.format(end=0.3) + RIGID + direction)
     mean, e = 2000.0 * GRAVITY * height, share * height / 2.0
     last = run.array("dem", "edge_stress")[-1].ravel()
-    assert last.max() == pytest.approx(mean * (1.0 + 6.0 * e / width), rel=1e-3)
-    assert last.min() == pytest.approx(mean * (1.0 - 6.0 * e / width), rel=1e-3)
-    assert run.array("dem", "thrust_force")[-1, 0][[0, -1]] == pytest.approx([share * mean * width, mean * width], rel=1e-3)
-    assert run.array("dem", "thrust_place")[-1, 0, 0] == pytest.approx(-e, rel=1e-3)
+    assert last.max() == pytest.approx(mean * (1.0 + 6.0 * e / width), rel=2e-4)
+    assert last.min() == pytest.approx(mean * (1.0 - 6.0 * e / width), rel=2e-4)
+    assert run.array("dem", "thrust_force")[-1, 0][[0, -1]] == pytest.approx([share * mean * width, mean * width], rel=2e-4)
+    assert run.array("dem", "thrust_place")[-1, 0, 0] == pytest.approx(-e, rel=2e-4)
     assert not any("not unique" in text for text in run.analyses[0]["warnings"])
 
 
@@ -122,11 +127,11 @@ def test_a_leaning_pier_on_rigid_contacts(tmp_path) -> None:
         '[structure]\nkind = "blocks"\nblock = [' + ",".join(f"{{ points = {one} }}" for one in stones) + "]\n[material]\ndensity = 2000\n"
     )
     run = found(tmp_path, text + STILL.format(end=0.1) + RIGID)
-    assert run["dem"]["edge_stress_at_rest_Pa"] == pytest.approx(2000.0 * GRAVITY * 3.0 * 1.9, rel=1e-3)
+    assert run["dem"]["edge_stress_at_rest_Pa"] == pytest.approx(2000.0 * GRAVITY * 3.0 * 1.9, rel=2e-4)
     force, place = (run.array("dem", name)[-1] for name in ("thrust_force", "thrust_place"))
     level = np.round(place[:, 1]).astype(int)
-    assert np.abs(force[:, 1]) == pytest.approx(2000.0 * GRAVITY * (3 - level), rel=1e-3)
-    assert place[:, 0] == pytest.approx(0.65 + 0.05 * level, rel=1e-3)
+    assert np.abs(force[:, 1]) == pytest.approx(2000.0 * GRAVITY * (3 - level), rel=2e-4)
+    assert place[:, 0] == pytest.approx(0.65 + 0.05 * level, rel=2e-4)
 
 
 def unbalanced(run, k: int, weight: float, centre: np.ndarray) -> tuple[float, float]:
@@ -155,7 +160,7 @@ def test_an_arch_on_rigid_contacts_has_one_of_many_states(direction: str, tmp_pa
     horizontal = np.abs(force[:, 0])
     assert horizontal == pytest.approx(horizontal.mean(), rel=1e-4)
     assert run["tilt"]["thrust_min_N"] < horizontal.mean() < run["tilt"]["thrust_max_N"]
-    assert horizontal.mean() == pytest.approx(185.0e3, rel=0.1)  # springs of 1e9 and 1e11 Pa/m
+    assert horizontal.mean() == pytest.approx(193.0e3 if direction else 188.5e3, rel=5e-3)  # springs: 185.0e3
     assert any(f"have {6 if direction else 3} unknowns more" in text for text in run.analyses[0]["warnings"])
 
 
@@ -176,8 +181,21 @@ def test_joints_of_one_pair_and_of_a_stone_of_several_parts(solver: str, directi
     assert (np.sort(sides, axis=1) == [0, 1]).all(axis=1).sum() == 3
 
 
+def test_forces_at_the_boundary_of_contacts_are_no_fewer_unknowns() -> None:
+    """Three unknowns a contact wherever the solver places its force: the arch has three more than equations, without its last contact none."""
+    arch = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 9}
+    model = make_model(make_deck({"structure": arch, "analysis": {"kind": "dem"}}).building, Dem(kind="dem"))
+    place = np.zeros((1, 10, 2))
+    for stress in (1e5, np.inf):
+        state = Thrust(np.ones((1, 10, 2)), place, np.full((1, 10, 2), stress))
+        assert redundancy(model, state) == 3
+    tree = place.copy()
+    tree[0, -1] = np.nan
+    assert redundancy(model, Thrust(np.ones((1, 10, 2)), tree, np.ones((1, 10, 2)))) == 0
+
+
 def test_threads_that_rigid_contacts_do_not_use_are_stated(tmp_path) -> None:
     deck = tmp_path / "deck.toml"
     deck.write_text('[structure]\nkind = "block"\nwidth = 1\nheight = 2\n' + STILL.format(end=0.05) + RIGID)
-    said = [any("uses one thread" in text for text in extrados.run(deck, threads=n).analyses[0]["warnings"]) for n in (None, 1, 2)]
-    assert said == [False, False, True]
+    said = [any("uses one thread" in text for text in extrados.run(deck, threads=n).analyses[0]["warnings"]) for n in (None, 0, 1, 2)]
+    assert said == [False, False, False, True]

@@ -77,8 +77,8 @@ def put_thrust(options: Dem, seen: BlocksSeen, result: Result) -> dict[str, floa
     found = thrust_of(model, run)
     if options.rigid and (degree := redundancy(model, found)):
         result.warnings.append(
-            f"the forces of rigid contacts are not unique: at the start of the motion they have {degree} unknowns more than equations of "
-            "equilibrium. The key `thrust` gives one of many states of equilibrium; springs depend on the stiffness of the joints, and limit "
+            f"the forces of rigid contacts are in general not unique: at the start of the motion the contacts that carry forces have {degree} "
+            "unknowns more than equations of equilibrium. The key `thrust` gives one of many states of equilibrium; springs depend on the stiffness of the joints, and limit "
             "analysis gives the least and the greatest thrust"
         )
     if seen.sliding.ratio > SLID:
@@ -96,25 +96,22 @@ def put_thrust(options: Dem, seen: BlocksSeen, result: Result) -> dict[str, floa
 
 
 def redundancy(model: Model | SolidModel, thrust: Thrust) -> int:
-    """Degree of static indeterminacy of the contacts at the start: unknowns less equations of equilibrium, summed over the groups of blocks
-    that touch each other. A contact that carries within its boundary has three unknowns (in space six), at its boundary two (three)."""
+    """Degree of static indeterminacy of the contacts that carry forces at the start: unknowns less equations of equilibrium, summed over the
+    groups of blocks that touch each other. Each contact has three unknowns (in space six), as each block has equations: zero where the
+    contacts form trees. A force at the boundary of a contact counts alike, since its place belongs to one state of many."""
     if not len(thrust.force):
         return 0
     loaded = np.flatnonzero(np.isfinite(thrust.place[0]).all(axis=1))
     if isinstance(model, SolidModel):
-        freedoms, bodies, of_end = 6, model.sides[loaded], model.assembly.corner_joint
+        freedoms, bodies = 6, model.sides[loaded]
     else:
-        freedoms, of_end = 3, np.repeat(np.arange(len(model.rigid.joints)), 2)
-        bodies = np.reshape([pair for j in loaded if (pair := model.rigid.joints[j])], (-1, 2))
-    within = ~np.isin(loaded, of_end[~np.isfinite(thrust.stress[0]).ravel()])
-    unknowns = np.where(within, freedoms, 2 if freedoms == 3 else 3)
+        freedoms, bodies = 3, np.reshape([pair for j in loaded if (pair := model.rigid.joints[j])], (-1, 2))
     low, high = bodies.min(axis=1), bodies.max(axis=1)
     mobile = high < model.count
     graph = coo_array((np.ones(mobile.sum()), (low[mobile], high[mobile])), shape=(model.count, model.count))
     groups, group = connected_components(graph, directed=False)
-    free = -freedoms * np.bincount(group, minlength=groups)
-    np.add.at(free, group[low], unknowns)
-    return int(np.maximum(free, 0).sum())
+    excess = np.bincount(group[low], minlength=groups) - np.bincount(group, minlength=groups)
+    return freedoms * int(np.maximum(excess, 0).sum())
 
 
 def _of_section(model: Model, run: dem.Run) -> Thrust:
