@@ -263,6 +263,17 @@ def test_a_property_that_only_some_analyses_neglect_is_reported_if_it_affects_st
     assert left_out(make_deck(deck)) == [], "who overrides it for itself knows"
 
 
+def test_water_that_other_analyses_do_not_include_is_reported() -> None:
+    """Once, beside the first of them; not for a study of the motion, nor where all include it."""
+    wet = {"kind": "dem", "water": {"level": 1.0}}
+    deck = {"structure": BLOCK, "motion": SINE, "analysis": [wet, {"kind": "motion"}, {"kind": "tilt"}, {"kind": "rocking"}]}
+    remarks = left_out(make_deck(deck))
+    assert [(remark.text, remark.analysis) for remark in remarks] == [
+        ("deck: analysis.water: dem includes this water; tilt, rocking do not", 2)
+    ]
+    assert left_out(make_deck({**deck, "analysis": [wet, wet, {"kind": "motion"}]})) == []
+
+
 def test_defaults_are_not_reported() -> None:
     same = {"cohesion": 0.0, "friction": 0.7, "restitution": "inelastic", "types": []}
     assert left_out(make_deck({"structure": ARCH, "joints": same, "analysis": {"kind": "tilt"}})) == []

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from extrados import kinds
-from extrados.analyses.table import OVERRIDES, Analysis
+from extrados.analyses.table import OVERRIDES, Analysis, BuildingAnalysis
 from extrados.decks.reader import PROPERTIES, Deck
 from extrados.model.errors import Key
 from extrados.model.properties import JointType
@@ -56,7 +56,7 @@ def left_out(deck: Deck) -> list[Remark]:
                 if name not in asked[k] and (names[k], name) not in found:
                     words = f"{names[k]} does not use this key{_known_to(name, deck.analyses)}"
                     found[names[k], name] = Remark(deck.complaint(options, ("analysis", *at), words), k)
-    found |= _dashpots(deck, names)
+    found |= _dashpots(deck, names) | _water(deck, names)
     if deck.code is not None and not any(getattr(o, "by", o.kind) in BY_CODE for o in deck.analyses):
         found["", "code"] = Remark(
             deck.complaint(None, ("code",), f"no analysis of this deck uses this table; {', '.join(BY_CODE)} can use it"), 0
@@ -73,6 +73,19 @@ def _dashpots(deck: Deck, names: list[str]) -> dict[tuple[str, str], Remark]:
         for n, damper in enumerate(deck.building.dampers)
         if still and damper.damping is not None
     }
+
+
+def _water(deck: Deck, names: list[str]) -> dict[tuple[str, str], Remark]:
+    """Water of an analysis, where others of the same building do not include it."""
+    wet = [k for k, options in enumerate(deck.analyses) if getattr(options, "water", None) is not None]
+    dry = [k for k, options in enumerate(deck.analyses) if k not in wet and isinstance(options, BuildingAnalysis)]
+    if not wet or not dry:
+        return {}
+    text = (
+        f"{', '.join(names[k] for k in wet)} {'includes' if len(wet) == 1 else 'include'} this water; "
+        f"{', '.join(names[k] for k in dry)} {'does' if len(dry) == 1 else 'do'} not"
+    )
+    return {("analysis", "water"): Remark(deck.complaint(deck.analyses[wet[0]], ("analysis", "water"), text), dry[0])}
 
 
 def _reckoned_with(options: Analysis, building: Building) -> set[str]:

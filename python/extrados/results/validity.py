@@ -140,7 +140,7 @@ Pushover = Validity(
 Dem = Validity(
     "Each block moves independently. Contacts open and slide. They lose energy by damping, or by rigid impacts.",
     "Stiffness, damping and rebound of joints are uncertain parameters: vary them. Blocks do not crack. If the "
-    "response is chaotic, one run is only one sample.",
+    "response is chaotic, one run is only one sample. The pressure of water is that at rest, and joints that crush recover when they close.",
 )
 DemDomain = Validity(
     "A single pulse acts on blocks that move independently, as in the discrete-element analysis. At "
