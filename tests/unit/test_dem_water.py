@@ -13,6 +13,7 @@ from extrados.decks.reader import make_deck
 from extrados.limit.loads import tilt_loads
 from extrados.limit.programme import LimitAnalysis
 from extrados.model.geometry.water import water_pressure
+from extrados.results.typed import typed
 from extrados.views.building import Building
 
 WIDTH, HEIGHT, DENSITY = 1.0, 3.0, 2400.0
@@ -57,6 +58,16 @@ def test_a_block_stands_up_to_the_critical_level(uplift: str, friction: float, s
         found = ask(there, {"level": ratio * level, "uplift": uplift}, friction, solver=solver)
         outcome = found.results.outcome if ratio < 1.0 else found.verdict.outcome
         assert outcome == ("at-rest" if ratio < 1.0 else "cannot-stand"), found
+        assert any("water pressure is constant" in text for text in found.warnings)
+        if ratio < 1.0:
+            assert found.answer.startswith("The structure stands under its own weight and the water pressure. No motion acts on it.")
+            assert ("kN upward" in found.answer) == (uplift != "none")
+        else:
+            statement = found.verdict.statement
+            assert "it collapses under its own weight and the water pressure." in statement
+            # also what discrete elements find
+            assert statement.count("under its own weight and the water pressure") == 2 == statement.count("own weight")
+            assert found.results.other_loads == "the water pressure" and typed("dem", found.results.as_json()) == found.results
 
 
 @pytest.mark.parametrize("uplift", list(UPLIFT))
@@ -121,6 +132,7 @@ def test_a_free_body_swings_under_a_constant_couple_at_its_frequency() -> None:
     ("structure", "water", "keys", "why"),
     [
         ({"kind": "block", "width": 1, "height": 3}, {"level": 3.5}, {}, "give a level within"),
+        ({"kind": "block", "width": 1, "height": 3}, {"level": 1e-6, "uplift": "none"}, {}, "wets no face"),
         ({"kind": "block", "width": 1, "height": 3}, {"level": 1.0}, {"direction": 0.0}, "cannot include water"),
         (
             {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 150.0, "voussoirs": 9},

@@ -9,6 +9,8 @@ from test_dem3_core import DENSITY, doweled_cube, hanging, solids
 from test_dem3_nonsmooth import STILL, slope
 
 import extrados
+from extrados.analyses.dem.impact_rules import ContactValues, Impact
+from extrados.analyses.dem.model import doubts_of_rigid_mortar
 from extrados.core import dem, dem3, dem_run
 from extrados.core.ground import Ground, as_motion_set
 from extrados.model.geometry.solids.polyhedra import box
@@ -210,3 +212,12 @@ def test_mortar_that_cannot_slide_is_refused_on_rigid_contacts(way: dict[str, fl
     assert "cannot have mortar: give the coefficient" in extrados.run(deck).results[0].reason
     del deck["joints"]["cohesion"]
     assert extrados.run(deck).results[0].status == "ok"
+
+
+@pytest.mark.parametrize(("count", "name", "words"), [(1, "joint", "one joint carries"), (2, "contact", "2 contacts carry")])
+def test_the_limit_of_tension_is_stated_of_one_joint_and_of_several(count: int, name: str, words: str) -> None:
+    stiffness, friction, cohesion, tension, frequency = (np.full(count, value) for value in (ANY, 0.5, 1e5, 1e6, 1.0))
+    values = ContactValues(stiffness, stiffness, friction, cohesion, tension, 0.0, Impact(frequency, frequency, frequency))
+    assert any(
+        text.startswith(f"{words} less tension") and "200 kPa instead of 1e+03" in text for text in doubts_of_rigid_mortar(values, name)
+    )

@@ -68,7 +68,6 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
             raise MemoryError(f"not enough memory: an analysis needs {room.NEEDED >> 20} MB of address space")
         result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
         _check(result)
-        result.warnings = [*context.warnings, *result.warnings]
     except CannotStand as error:
         from extrados.analyses.limit.self_weight import collapses_at_rest  # loaded with the solver that proved it
 
@@ -89,6 +88,6 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
         else:  # the other analyses of the deck still count
             result = faulty(options.kind, error, context.resume)
     remarks, _ = building.told()
-    result.warnings = [*remarks, *result.warnings]
+    result.warnings = [*remarks, *context.warnings, *result.warnings]
     result.seconds = time.perf_counter() - begin
     return result

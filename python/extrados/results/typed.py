@@ -21,6 +21,7 @@ def typed(kind: str, values: dict[str, Any]) -> KindResults:
     """
     if not values:
         return KindResults()
-    if values.keys() == SelfWeight.model_fields.keys():
+    fields = SelfWeight.model_fields
+    if {name for name, field in fields.items() if field.is_required()} <= values.keys() <= fields.keys():
         return SelfWeight.model_validate(values)
     return TypeAdapter(kinds.load(kinds.ANALYSES[kind].results)).validate_python(values)

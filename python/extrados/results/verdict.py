@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import ClassVar, Literal, Protocol, TypeVar
 
-from extrados.results.fields import ResultModel, fact
+from extrados.results.fields import ResultModel, fact, maybe
 
 Outcome = Literal["stands", "collapses", "cannot-stand", "open", "not-applicable"]
 Bound = Literal["exact", "upper", "lower"]
@@ -28,7 +28,7 @@ class Verdict(ResultModel):
     """Conclusion of an analysis. `demand` and `capacity` are of one quantity in `unit`.
 
     outcome: "stands", the demand stays below the capacity; "collapses", the demand reaches the capacity;
-    "cannot-stand", a certificate proves collapse under self-weight; "open", the analysis cannot decide;
+    "cannot-stand", a certificate proves collapse under self-weight (and other constant loads, if any); "open", the analysis cannot decide;
     "not-applicable", the deck holds no demand against the capacity, or the analysis asks no such question.
     """
 
@@ -94,9 +94,14 @@ def as_model(results: KindResults, model: type[Model]) -> Model:
     return results
 
 
+def loads_at_rest(other: str | None) -> str:
+    """The constant loads of a structure in words; other: those besides the own weight."""
+    return f"its own weight and {other}" if other else "its own weight"
+
+
 class SelfWeight(KindResults):
-    """Results of any analysis of a building that collapses under its own weight, which a certificate proves; or of one that did not carry its
-    constant loads in a run that proves nothing."""
+    """Results of any analysis of a building that collapses under its own weight and `other_loads`, which a certificate proves; or of one that
+    did not carry its constant loads in a run that proves nothing."""
 
     collapse_acceleration_g: float = fact("always 0: the building carries no horizontal acceleration", "g")
     safety_factor: float = fact("always 0: the building collapses before the demand acts")
@@ -108,6 +113,7 @@ class SelfWeight(KindResults):
     neglected: list[str] = fact(
         "strengths, restraints and pressures of the deck that the certificate neglects; if there are any, the outcome is open"
     )
+    other_loads: str | None = maybe("constant loads besides the own weight under which the building collapses")
 
     def statement(self) -> str:
         """The result in words."""
@@ -116,12 +122,13 @@ class SelfWeight(KindResults):
                 "The analysis does not decide whether the structure carries its constant loads: no certificate "
                 f"proves that it collapses. {self.certificate}."
             )
+        loads = loads_at_rest(self.other_loads)
         if not self.neglected:
-            return f"The structure cannot stand: it collapses under its own weight. {self.certificate}."
+            return f"The structure cannot stand: it collapses under {loads}. {self.certificate}."
         strengths = " and ".join(self.neglected)
         return (
             f"The structure can stand only with the contribution of {strengths}; without it, the structure "
-            f"collapses under its own weight. {self.certificate}."
+            f"collapses under {loads}. {self.certificate}."
         )
 
     def judged(self, demand: Demand) -> Verdict:

@@ -17,6 +17,7 @@ from extrados.core.errors import Cancelled, status_code
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.earth import passive_left_out
 from extrados.model.geometry.water import Pressure
+from extrados.results.verdict import loads_at_rest
 from extrados.schema.constants import GRAVITY
 from extrados.views.rigid import RigidBodies
 
@@ -59,6 +60,11 @@ class Model:
     def load(self) -> np.ndarray | None:
         """Constant loads of all bodies (bodies, 4) [N, N, N m, N m], as core.dem.Bodies has them."""
         return None if self.water is None else self.water.on_bodies(self.rigid.body_of_block, self.rigid.centroid)
+
+    @property
+    def other_loads(self) -> str:
+        """Constant loads besides the own weight, in words."""
+        return "" if self.water is None else "the water pressure"
 
     @property
     def body_names(self) -> list[str]:
@@ -105,11 +111,11 @@ class Model:
 
 
 class Falls(Refused):
-    """A block falls under its own weight."""
+    """A block falls under the constant loads."""
 
 
 class Restless(Refused):
-    """The structure does not come to rest under its own weight."""
+    """The structure does not come to rest under the constant loads."""
 
 
 def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end", "collapse", "rest", "left")) -> Found:
@@ -120,7 +126,7 @@ def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end
     if run.interrupted or run.reason in keep:
         return run
     names = [model.body_names[k] for k in run.blamed]
-    first = names[0] if names else "a block"
+    first, loads = names[0] if names else "a block", loads_at_rest(model.other_loads)
     wedged = (
         (
             f". In {run.effort.open_steps} of these steps the solver did not find the impulses at the rigid "
@@ -134,8 +140,8 @@ def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end
         {
             "step": f"the time step exceeds the critical time step of {run.critical_step:.3g} s: give a smaller `time_step`",
             "overlap": f"{' and '.join(names)} overlap at the start: correct the geometry",
-            "unsettled": f"the structure does not stand under its own weight: {first} falls",
-            "restless": f"the structure does not come to rest under its own weight in {run.settling_steps} steps ({first} moves most), so "
+            "unsettled": f"the structure does not stand under {loads}: {first} falls",
+            "restless": f"the structure does not come to rest under {loads} in {run.settling_steps} steps ({first} moves most), so "
             f"discrete elements do not show whether it stands{wedged}",
             "blow-up": f"the error of the energy balance is too large: the run was stopped at step {run.steps} ({run.stop_time:.4g} s), "
             f"and {first} is the fastest block. Try a smaller time step",
@@ -150,7 +156,7 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
     if model.water is not None:
         found.append(
             "the water pressure is constant: hydrodynamic pressure, water that enters cracks during the motion, and a change of the wet "
-            "faces are neglected. The pressure acts from the start, so `self-weight` in these results includes this pressure"
+            "faces are neglected. The pressure acts from the start, together with the self-weight"
         )
     if options.rigid:
         return found + doubts_of_rigid_mortar(model.values)
@@ -169,7 +175,7 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
 
 def warnings_of_solids(model: SolidModel, *, springs: bool) -> list[str]:
     """What is doubtful about the joints of blocks in space."""
-    found = doubts_of_springs(model.values) if springs else doubts_of_rigid_mortar(model.values)
+    found = doubts_of_springs(model.values, "contact") if springs else doubts_of_rigid_mortar(model.values, "contact")
     return [*found, f"{RECOVERY}. Contacts that form later, and edges that cross, do not crush"] if model.strength else found
 
 
@@ -187,9 +193,9 @@ def adjusted(model: Model) -> list[str]:
     return found
 
 
-def doubts_of_springs(values: ContactValues) -> list[str]:
-    """Warnings that impacts are damped too little, and that mortar bears more in bending than an elastic joint."""
-    ratio, found = values.ratios(), _doubts_of_tension(values)
+def doubts_of_springs(values: ContactValues, joint: str = "joint") -> list[str]:
+    """Warnings that impacts are damped too little, and that mortar bears more in bending than an elastic joint. joint: its name."""
+    ratio, found = values.ratios(), _doubts_of_tension(values, joint)
     if ratio["rotation"] < impact_rules.LEAST_AT_ROTATION or ratio["edge"] < impact_rules.LEAST_AT_EDGE:
         found.append(
             f"the damping is low: {100 * ratio['rotation']:.3g} % of critical at rotational impact and {100 * ratio['edge']:.3g} "
@@ -198,18 +204,18 @@ def doubts_of_springs(values: ContactValues) -> list[str]:
     return found
 
 
-def doubts_of_rigid_mortar(values: ContactValues) -> list[str]:
-    """The warning that rigid contacts find mortar at its strongest."""
+def doubts_of_rigid_mortar(values: ContactValues, joint: str = "joint") -> list[str]:
+    """The warning that rigid contacts find mortar at its strongest. joint: its name."""
     if not max(np.nanmax(values.tension, initial=0.0), np.nanmax(values.cohesion, initial=0.0)) > 0.0:
         return []
     return [
-        *_doubts_of_tension(values),
+        *_doubts_of_tension(values, joint),
         "with rigid contacts, as in limit analysis, mortar holds if its strength allows any equilibrium. Brittle mortar may fail earlier "
         "where several joints, or both ends of a joint, share a force: compare with springs",
     ]
 
 
-def _doubts_of_tension(values: ContactValues) -> list[str]:
+def _doubts_of_tension(values: ContactValues, joint: str) -> list[str]:
     if not np.nanmax(values.tension, initial=0.0) > 0.0:
         return []
     found = [
@@ -220,8 +226,9 @@ def _doubts_of_tension(values: ContactValues) -> list[str]:
     if len(less):
         most = values.cohesion[less] / values.friction[less]
         j = int((values.tension[less] - most).argmax())
+        those = f"one {joint} carries" if len(less) == 1 else f"{len(less)} {joint}s carry"
         found.append(
-            f"{len(less)} joints carry less tension than the deck gives, because Coulomb's law allows at most cohesion / friction: "
+            f"{those} less tension than the deck gives, because Coulomb's law allows at most cohesion / friction: "
             f"{most[j] / 1000.0:.3g} kPa instead of {values.tension[less][j] / 1000.0:.3g} kPa"
         )
     return found

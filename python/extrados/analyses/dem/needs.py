@@ -137,7 +137,8 @@ def _refuse_crushing(building: Building, solids: SolidAssembly | None, rigid: bo
 
 
 def _refuse_water(stones: Assembly, water: tables.Water) -> None:
-    """Refused where water wets nothing or flows over the structure, where soil lies in between, or an opening in linear uplift."""
+    """Refused where the level is not within the height of the structure or the water wets no face, for a structure with fill, and for linear
+    uplift in a section with openings."""
     outline = np.concatenate(stones.outlines)
     low, high = outline.min(axis=0), outline.max(axis=0)
     if not low[1] < water.level <= high[1]:
@@ -148,9 +149,14 @@ def _refuse_water(stones: Assembly, water: tables.Water) -> None:
     if stones.fill is not None:
         raise Refused("the water pressure on a structure with fill is not calculated: remove `water` or the fill", ("analysis", "water"))
     try:
-        water_pressure(stones, water.level, water.side, water.uplift, water.density)
+        pressure = water_pressure(stones, water.level, water.side, water.uplift, water.density)
     except BadGeometry as error:
         raise Refused(str(error), ("analysis", "water", "uplift")) from None
+    if not pressure.force.any():
+        raise Refused(
+            f"water at a level of {water.level:.4g} m on the {water.side} wets no face of the structure: give a higher level",
+            ("analysis", "water", "level"),
+        )
 
 
 def _refuse_worn_thrust(building: Building) -> None:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -33,6 +34,7 @@ class SolidModel:
     values: ContactValues
     ties: ElementTies = NO_TIES
     strength: float = 0.0
+    other_loads: ClassVar[str] = ""
 
     @property
     def count(self) -> int:

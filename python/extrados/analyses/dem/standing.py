@@ -24,6 +24,7 @@ from extrados.limit.solids import SolidLimit
 from extrados.model.errors import WHOLE
 from extrados.model.geometry.water import Pressure
 from extrados.results.model import Result
+from extrados.results.verdict import loads_at_rest
 from extrados.views.building import Building
 
 WEDGED = (
@@ -65,18 +66,16 @@ def compared(context: Context, rigid: bool, model: Model | SolidModel, find: Cal
         except NoAnswer:
             raise Refused(str(error), WHOLE) from None
         if proof is not None:
-            raise CannotStand(f"{proof}; discrete elements: {error}", proof.motion, proof.neglects) from None
+            raise CannotStand(f"{proof}; discrete elements: {error}", proof.motion, proof.neglects, model.other_loads) from None
         wedged = f"; {WEDGED}" if isinstance(error, Falls) else ""
         raise Refused(f"{error}{wedged}", WHOLE) from None
     if doubt and result.status == "ok":
         result.answer += f" {doubt}"
-    result.warnings += [
-        text for text in (warning, alone or _contradiction(context.building, proof_of, isinstance(model, SolidModel))) if text
-    ]
+    result.warnings += [text for text in (warning, alone or _contradiction(context.building, proof_of, model)) if text]
     return result
 
 
-def _contradiction(building: Building, proof_of: Callable[[Building], CannotStand | None], solid: bool) -> str:
+def _contradiction(building: Building, proof_of: Callable[[Building], CannotStand | None], model: Model | SolidModel) -> str:
     """That limit analysis proves collapse where elements stand; empty where it does not."""
     try:
         proof = proof_of(building)
@@ -85,8 +84,8 @@ def _contradiction(building: Building, proof_of: Callable[[Building], CannotStan
     if proof is None:
         return ""
     return (
-        f"with discrete elements the structure stands {_held(building, solid)}, but limit analysis finds collapse under "
-        f"self-weight: {proof}"
+        f"with discrete elements the structure stands {_held(building, isinstance(model, SolidModel))}, but limit analysis finds collapse "
+        f"under {loads_at_rest(model.other_loads)}: {proof}"
     )
 
 
@@ -98,7 +97,7 @@ def left_out(model: Model | SolidModel) -> str:
         count, most, what = model.count, MOST_SOLIDS, "solids"
     if count <= most:
         return ""
-    return f"no second method checked whether the structure stands under self-weight: such a check accepts at most {most} {what}, and the structure has {count}"
+    return f"no second method checked whether the structure stands under {loads_at_rest(model.other_loads)}: such a check accepts at most {most} {what}, and the structure has {count}"
 
 
 def jammed(model: Model | SolidModel, threads: int) -> tuple[str, str]:

@@ -1,6 +1,7 @@
 """The answers of a run and of a tilt test in words."""
 
 from extrados.results.dem import ONE_PATH, Convergence, DemRun, DemTilt, SolidDemRun, SolidDemTilt, TieRun
+from extrados.results.verdict import loads_at_rest
 from extrados.schema.quantities import three_figures
 
 #: Rotations [rad] and slips [m] below this are rounding errors and the elasticity of joints.
@@ -83,16 +84,19 @@ def _wet(r: DemRun | DemTilt) -> str:
     if not r.water_force_N:
         return ""
     across, up = r.water_force_N
-    return (
-        f" Water presses on the blocks with {three_figures(1e-3 * abs(across))} kN towards {'+x' if across >= 0.0 else '-x'} and "
-        f"{three_figures(1e-3 * abs(up))} kN {'upward' if up >= 0.0 else 'downward'}."
-    )
+    parts = [
+        f"{three_figures(1e-3 * abs(force))} kN {way}"
+        for force, way in ((across, "towards +x" if across >= 0.0 else "towards -x"), (up, "upward" if up >= 0.0 else "downward"))
+        if abs(force) > STILL * max(abs(across), abs(up))
+    ]
+    return f" Water presses on the blocks with {' and '.join(parts)}."
 
 
 def motion_answer(r: DemRun, idle: bool) -> str:
     """The answer of a run under a motion; idle: nothing moves the ground."""
     if idle and r.outcome == "at-rest":
-        return f"The structure stands under its own weight. No motion acts on it.{_wet(r)}"
+        loads = loads_at_rest("the water pressure" if r.water_force_N else None)
+        return f"The structure stands under {loads}. No motion acts on it.{_wet(r)}"
     turn = max(r.peak_rotation_rad.items(), key=lambda item: abs(item[1]), default=("", 0.0))
     first, audit = _fate(r, "joint"), _audit(r)
     return f"{first}; {_moved(turn[0], abs(turn[1]), r.peak_slip_m)}, {r.bounces} bounces; {audit}.{_tied(r.ties)}{_wet(r)}"

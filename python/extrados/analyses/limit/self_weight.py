@@ -8,6 +8,7 @@ import numpy as np
 from extrados.analyses.limit.common import geometry_arrays
 from extrados.limit.errors import CannotStand
 from extrados.model.errors import NoView
+from extrados.results.fields import given
 from extrados.results.model import Array, Result
 from extrados.results.verdict import SelfWeight
 from extrados.views.building import Building
@@ -24,7 +25,14 @@ def collapses_at_rest(kind: str, proof: CannotStand, building: Building) -> Resu
         neglected.append(_WALL)
     text = str(proof)
     certificate = text[:1].upper() + text[1:]
-    found = SelfWeight(collapse_acceleration_g=0.0, safety_factor=0.0, certificate=certificate, proven=True, neglected=neglected)
+    found = SelfWeight(
+        collapse_acceleration_g=0.0,
+        safety_factor=0.0,
+        certificate=certificate,
+        proven=True,
+        neglected=neglected,
+        **given(other_loads=proof.other_loads or None),
+    )
     result = Result(kind, results=found, answer=found.statement())
     if proof.motion is not None:
         result.arrays = geometry_arrays(building.blocks()) | {
