@@ -1,6 +1,7 @@
 """Water beside a structure: the pressure by hand, critical levels of a block, limit analysis, energy, refusals."""
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from extrados.limit.loads import tilt_loads
 from extrados.limit.programme import LimitAnalysis
 from extrados.model.geometry.water import water_pressure
 from extrados.results.typed import typed
+from extrados.show.limit.self_weight import draw_self_weight
 from extrados.views.building import Building
 
 WIDTH, HEIGHT, DENSITY = 1.0, 3.0, 2400.0
@@ -145,3 +147,12 @@ def test_a_free_body_swings_under_a_constant_couple_at_its_frequency() -> None:
 def test_water_is_refused_by_name(structure: dict[str, Any], water: dict[str, Any], keys: dict[str, Any], why: str) -> None:
     found = ask(structure, water, **keys)
     assert found.status == "refused" and why in found.reason, found
+
+
+def test_the_figure_of_collapse_at_rest_names_the_water(tmp_path: Path) -> None:
+    analysis = {"kind": "dem", "end_time": 0.3, "perturbed": False, "water": {"level": 2.6}}
+    material = {"density": DENSITY, "young": "20 GPa"}
+    block = {"kind": "block", "width": WIDTH, "height": HEIGHT}
+    run = extrados.run({"structure": block, "material": material, "joints": {"friction": 0.9}, "analysis": analysis})
+    ((_, caption),) = draw_self_weight(run, "dem", tmp_path)
+    assert caption.startswith("Collapse mechanism under self-weight and the water pressure.")

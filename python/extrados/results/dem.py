@@ -99,7 +99,7 @@ class BlocksRun(KindResults):
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
     collapse_displacement_m: float = fact("displacement of a block that counts as collapse; not applied to a block that only slides", "m")
     peak_displacement_m: float = fact(
-        "greatest displacement of any block from its position at rest under self-weight, relative to the "
+        "greatest displacement of any block from its position at rest under the constant loads, relative to the "
         "common displacement of the supports",
         "m",
     )
@@ -140,7 +140,7 @@ class BlocksRun(KindResults):
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )
     edge_stress_at_rest_Pa: float | None = maybe(
-        "greatest compressive stress at an edge or corner of a joint at the start of the motion (self-weight, and with the initial "
+        "greatest compressive stress at an edge or corner of a joint at the start of the motion (constant loads, and with the initial "
         "rotation if there is one): linear pressure without tension; "
         "null if an edge or a corner alone carries the load",
         "Pa",

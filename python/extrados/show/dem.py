@@ -268,7 +268,8 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         low.set_xlim(0.0, time[-1])
         saved = style.save(fig, folder, f"{name}-rotation")
     slips = "" if slid is None else ", and slip of the joint that slips most"
-    return saved, f"Rotation of the blocks, measured from equilibrium under self-weight{slips}, and the ground acceleration."
+    loads = "self-weight and the water pressure" if "water_point" in run.arrays[name] else "self-weight"
+    return saved, f"Rotation of the blocks, measured from equilibrium under {loads}{slips}, and the ground acceleration."
 
 
 def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:

@@ -130,7 +130,7 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
             seen.rotation,
             ("time", "block"),
             "rad",
-            "rotation of each block from its position at rest under self-weight; positive towards +x",
+            "rotation of each block from its position at rest under the constant loads; positive towards +x",
         ),
         "tracked": Array(np.array(tracked), ("tracked",), "", "blocks whose rotation is reported"),
         "hinge": Array(

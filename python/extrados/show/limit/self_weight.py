@@ -25,7 +25,8 @@ def draw_self_weight(run: Stored, name: str, folder: Path) -> list[tuple[str, st
     step = SHOWN * size / max(speed)
     pose = np.column_stack([centroid + step * velocity[:, :2], step * velocity[:, 2]])
     fastest = int(np.argmax(speed))
-    title = "Collapse mechanism under self-weight"
+    other = run[name].get("other_loads")
+    title = f"Collapse mechanism under self-weight{f' and {other}' if other else ''}"
     with style.figure(7.2, 7.2 * min(1.2, max(0.35, np.ptp(corners[:, 1]) / np.ptp(corners[:, 0])))) as (fig, (ax,)):
         section.stone(ax, section.carried(blocks, centroid, pose))
         section.stone(ax, blocks, ghost=True)
