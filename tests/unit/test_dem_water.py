@@ -9,8 +9,12 @@ import pytest
 from dem_models import G, model, rectangle
 
 import extrados
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.dem import driver
+from extrados.analyses.sequence import run_one
 from extrados.core import dem
 from extrados.decks.reader import make_deck
+from extrados.limit.errors import CannotStand, NoAnswer
 from extrados.limit.loads import tilt_loads
 from extrados.limit.programme import LimitAnalysis
 from extrados.model.geometry.water import water_pressure
@@ -156,3 +160,16 @@ def test_the_figure_of_collapse_at_rest_names_the_water(tmp_path: Path) -> None:
     run = extrados.run({"structure": block, "material": material, "joints": {"friction": 0.9}, "analysis": analysis})
     ((_, caption),) = draw_self_weight(run, "dem", tmp_path)
     assert caption.startswith("Collapse mechanism under self-weight and the water pressure.")
+
+
+@pytest.mark.parametrize("error", [NoAnswer("no end"), Refused("no end"), CannotStand("no end")])
+def test_an_end_without_a_result_keeps_the_warnings(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
+    def ends(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(driver, "compared", ends)
+    there = make_deck(
+        {"structure": {"kind": "block", "width": WIDTH, "height": HEIGHT}, "analysis": {"kind": "dem", "water": {"level": 1.0}}}
+    )
+    found = run_one(Context(there), there.analyses[0], there.building)
+    assert sum("water pressure is constant" in text for text in found.warnings) == 1
