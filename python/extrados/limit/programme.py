@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
+from extrados.core.calls import stop_if_asked
 from extrados.limit.conic import collapse_of_crushing
 from extrados.limit.contact_points import ContactPoints
 from extrados.limit.coulomb import CoulombProblem, CoulombState
@@ -262,7 +263,7 @@ class LimitAnalysis:
         found = self._neutral(problem) or problem.least(self.starts, 0.0)
         if found is None:
             self._refuse_immovable(direction)
-            lower, upper = ("nothing" if g is None else f"{direction * g:.4f}" for g in self.without_dilatancy_between(direction))
+            lower, upper = ("nothing" if g is None else f"{direction * g:z.4f}" for g in self.without_dilatancy_between(direction))
             raise NoAnswer(
                 "no collapse state without dilatancy was found. The collapse load lies between the value without "
                 f"friction ({lower}) and the value with dilatancy ({upper}). If a block is carried only by "
@@ -318,6 +319,7 @@ class LimitAnalysis:
         sliding dilates; None where nothing stands without friction, or no load brings down what dilates."""
 
         def load(friction: float | np.ndarray) -> float | None:
+            stop_if_asked()
             limit = LimitAnalysis(self.assembly, friction, strength=self.strength, loads=self.loads)
             try:
                 return limit.collapse(direction)[0].gamma

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.batches import stacked, stop_if_asked, sweep
+from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.changes import changed, read_table
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import values_of
@@ -16,6 +16,7 @@ from extrados.analyses.limit.outcome import LOCKED, UNKNOWN, Outcome, Signature,
 from extrados.analyses.limit.tables import Sweep
 from extrados.analyses.limit.variation import evaluate, spoken
 from extrados.analyses.needs import in_space
+from extrados.core.calls import stop_if_asked
 from extrados.limit.errors import CannotStand
 from extrados.limit.finite_motion import finite_motion
 from extrados.limit.programme import Mechanism

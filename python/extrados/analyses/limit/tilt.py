@@ -26,6 +26,7 @@ from extrados.analyses.limit.common import (
 from extrados.analyses.limit.paths import doubt, follow_beside, follow_paths
 from extrados.analyses.limit.tables import Tilt
 from extrados.analyses.needs import in_space
+from extrados.core.calls import interruptible
 from extrados.limit.answer import CENTRAL, Answer
 from extrados.limit.certificate import Certificate, certify
 from extrados.limit.coulomb import CoulombState
@@ -290,7 +291,7 @@ def _side_by_side(context: Context, limit: LimitAnalysis) -> tuple[dict[int, Pat
     followed: dict[int, Paths] = {}
     if limit.strength is None:
         followed |= _paths(context, limit, [d for d in (1, -1) if limit.coulomb[d].falling is None], patient=True)
-    with ThreadPoolExecutor(max(1, min(2, context.threads))) as pool:
+    with interruptible(), ThreadPoolExecutor(max(1, min(2, context.threads))) as pool:
         return followed, dict(zip((1, -1), pool.map(limit.without_dilatancy_between, (1, -1)), strict=True))
 
 
