@@ -20,7 +20,8 @@ import numpy as np
 
 from extrados.analyses import workers
 from extrados.analyses.context import Context, Refused
-from extrados.core.calls import cancel_requested, interruptible, stop_if_asked, thread_count
+from extrados.core.calls import cancel_requested, interruptible, thread_count
+from extrados.core.calls import stop_if_asked as stop_if_asked
 from extrados.core.errors import Cancelled
 from extrados.core.threads import Worker
 from extrados.model.errors import WHOLE

@@ -15,10 +15,9 @@ import tomlkit
 
 from extrados import kinds
 from extrados.analyses.assess.budget import ENDING
-from extrados.analyses.batches import stacked, sweep
+from extrados.analyses.batches import stacked, stop_if_asked, sweep
 from extrados.analyses.conclude import faulty
 from extrados.analyses.context import Context
-from extrados.core.calls import stop_if_asked
 from extrados.decks.reader import LARGEST, Deck, DeckError, make_deck
 from extrados.decks.toml import loads
 from extrados.results import checkpoint, written
