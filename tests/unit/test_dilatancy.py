@@ -10,10 +10,12 @@ import pytest
 
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.context import Context
-from extrados.analyses.limit import common
+from extrados.analyses.limit import common, tilt
 from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.limit.certificate import certify
+from extrados.limit.coulomb import CoulombProblem
+from extrados.limit.errors import NoAnswer
 from extrados.limit.programme import LimitAnalysis
 from extrados.model.structures.arch import make_arch
 from extrados.results.limit import DILATANT, Tilt, judge_interval
@@ -117,6 +119,36 @@ def test_a_bound_without_a_state_decides_nothing(monkeypatch: pytest.MonkeyPatch
     below, above = (r.judged(asked(share * r.collapse_acceleration_g)) for share in (0.5, 1.01))
     assert (below.outcome, below.bound) == ("open", "upper") and DILATANT in below.statement
     assert above.outcome == "collapses"
+
+
+@pytest.mark.parametrize("senses", [(1, -1), (-1,)])
+@pytest.mark.parametrize("followed", [True, False])
+def test_without_a_state_of_the_rule_the_bounds_are_given(senses: tuple[int, ...], followed: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The upper bound by dilatant friction, the load paths and the reason; the bound alone lets nothing stand."""
+    small = {**WALL, "units": 2, "courses": 2}
+    bound, least = run(small, 0.3, kind="tilt").results, CoulombProblem.least
+    monkeypatch.setattr(CoulombProblem, "least", lambda self, *given: None if self.sense in senses else least(self, *given))
+    if not followed:
+        monkeypatch.setattr(tilt, "collapse_along_path", given_up)
+    result = run(small, 0.3, kind="tilt", friction_rule="non-associated")
+    r = result.results
+    assert result.status == "ok" and "no collapse state without dilatancy" in r.non_associated_reason and "-0.0" not in result.answer
+    assert r.collapse_acceleration_opposite_g == pytest.approx(bound.collapse_acceleration_opposite_g, abs=1e-9)
+    assert r.collapse_acceleration_non_associated_opposite_g is None and (r.non_dilatant is None) is (1 in senses)
+    verdict = r.judged_towards(asked(0.5 * r.collapse_acceleration_opposite_g), (True,))
+    assert r.judged_towards(asked(1.01 * r.collapse_acceleration_opposite_g), (True,)).outcome == "collapses"
+    if followed:
+        assert r.collapse_acceleration_load_path_opposite_g <= r.collapse_acceleration_opposite_g + 1e-6
+        assert verdict.capacity == r.collapse_acceleration_load_path_opposite_g and "no lower value is certified" in verdict.statement
+        assert "the design value to -x" in result.answer
+    else:
+        assert all(row.reason == "given up" for row in r.load_paths_opposite) and r.collapse_acceleration_load_path_opposite_g is None
+        assert (verdict.outcome, verdict.bound) == ("open", "upper") and r.non_associated_reason in verdict.statement
+
+
+def given_up(*given: Any) -> Any:
+    """A load path that leads nowhere."""
+    raise NoAnswer("given up")
 
 
 @pytest.mark.parametrize("strength", [None, 2e6])

@@ -9,8 +9,10 @@ import pytest
 
 import extrados
 from extrados.analyses.context import Context
+from extrados.analyses.limit import variation
 from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
+from extrados.limit.errors import NoAnswer
 from extrados.results.model import Result
 from extrados.running.run import Run, compute
 from extrados.show.charts import shown
@@ -112,6 +114,20 @@ def test_sweep_through_impossible_geometry() -> None:
     # Where the geometry ends no collapse under self-weight begins
     (limit,) = thick["stable_limits"]
     assert 0.5 < limit < 1.5 and thick.answer.count("begins or ends at") == 1 and not result["stable_limits"]
+    sides = [(c.before, c.after) for c in thick.results.changes]
+    assert sides[0] == ("unknown", 0) and sides[-1] == (len(thick["mechanisms"]), "unknown")
+    assert thick.results.changes[0].value == pytest.approx(0.0, abs=1e-5) and thick.results.changes[1].value == limit
+    assert "unknown" not in thick.answer
+
+
+def test_a_collapse_that_is_not_proven_limits_no_range(monkeypatch: pytest.MonkeyPatch) -> None:
+    def unproven(limit: Any) -> Any:
+        raise NoAnswer("neither an equilibrium state nor a collapse mechanism was found")
+
+    monkeypatch.setattr(variation, "cannot_stand", unproven)
+    thick = run(ARCH, kind="sweep", vary="thickness", values=[0.5, 1.5])
+    assert not thick["stable_limits"] and [gap["status"] for gap in thick["gaps"]] == ["no-answer"]
+    assert thick.results.changes[0].before == "unknown" and 0 not in {side for c in thick.results.changes for side in (c.before, c.after)}
 
 
 @pytest.mark.parametrize(

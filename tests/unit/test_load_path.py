@@ -1,5 +1,9 @@
 """Sliding without dilatancy as an interval, in space and in the plane: load paths, least states, their certificates."""
 
+import os
+import signal
+import threading
+import time
 from dataclasses import replace
 from typing import Any
 
@@ -8,16 +12,18 @@ import pytest
 from test_dilatancy import coursed
 from test_noisy_solids import corner
 
-from extrados import _core
+from extrados import _core, interrupts
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.context import Context
 from extrados.analyses.limit import solids as driver
+from extrados.analyses.limit.paths import follow_beside
 from extrados.analyses.limit.solid_sliding import slide
 from extrados.analyses.sequence import run_analyses
-from extrados.core.calls import interruptible
+from extrados.core.calls import cancel_requested, interruptible
 from extrados.core.errors import Cancelled
 from extrados.decks.reader import make_deck
 from extrados.limit.certificate import Certificate, certify
+from extrados.limit.coulomb import CoulombProblem
 from extrados.limit.errors import NoAnswer
 from extrados.limit.least_load import LeastLoad
 from extrados.limit.load_path import ELASTIC_LOAD, FIRST, RATIOS, LoadPath
@@ -136,6 +142,62 @@ def test_ctrl_c_ends_a_path() -> None:
             collapse_along_path(limit, 1, 0.5)
         finally:
             _core.api_support.set_cancel(0)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_tilt_after_an_interruption_is_not_interrupted(threads: int) -> None:
+    """The flag that an earlier Ctrl-C left says nothing about the load paths of a later analysis."""
+    before = len(interrupts.asked)
+    with interruptible():
+        signal.raise_signal(signal.SIGINT)
+        assert cancel_requested()
+    del interrupts.asked[before:]
+    tables = {"structure": {**WALL, "units": 2, "courses": 2}, "joints": {"friction": 0.3}, "analysis": {"kind": "tilt"}}
+    (result,) = run_analyses(Context(make_deck(tables), threads=threads))
+    assert result.status == "ok" and all(row.certified for row in result.results.load_paths)
+
+
+def test_ctrl_c_ends_the_search_for_states_without_dilatancy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of both directions side by side: each ends with its step."""
+    steps: list[Any] = []
+    pressed, step = threading.Event(), CoulombProblem._step
+
+    def interrupted(*given: Any) -> Any:
+        steps.append(given)
+        if len(steps) == 1:
+            os.kill(os.getpid(), signal.SIGINT)
+            for _ in range(500):
+                if cancel_requested():
+                    break
+                time.sleep(0.01)
+            pressed.set()
+        pressed.wait(10.0)
+        return step(*given)
+
+    monkeypatch.setattr(CoulombProblem, "_step", interrupted)
+    before = len(interrupts.asked)
+    tables = {"structure": {**WALL, "units": 10, "courses": 10}, "joints": {"friction": 0.6}, "analysis": {"kind": "tilt"}}
+    tables["analysis"]["friction_rule"] = "non-associated"
+    (result,) = run_analyses(Context(make_deck(tables), threads=2))
+    del interrupts.asked[before:]
+    assert result.status == "interrupted" and len(steps) <= 2
+
+
+def test_progress_comes_from_one_thread_at_a_time() -> None:
+    told: list[int] = []
+    here = threading.Lock()
+
+    def progress(done: int, total: int) -> None:
+        assert here.acquire(blocking=False)
+        time.sleep(0.002)
+        told.append(done)
+        here.release()
+
+    def follow(ratio: float, effort: int) -> Any:
+        raise NoAnswer("nothing to follow")
+
+    rows = follow_beside([follow] * 4, 4, progress)
+    assert told == list(range(4 * len(RATIOS) + 1)) and len(rows) == 4
 
 
 def test_the_first_step_is_that_of_bonded_joints(monkeypatch: pytest.MonkeyPatch) -> None:

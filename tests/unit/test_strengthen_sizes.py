@@ -4,9 +4,11 @@ import pytest
 from strengthen_decks import ANCHOR, NAVE, SLIDING, WALL, G, deck_of, run, strengthened
 
 from extrados.analyses.context import Context
+from extrados.analyses.strengthen import measures
 from extrados.analyses.strengthen.driver import measure_of
 from extrados.analyses.strengthen.measures import Worth, unmet_reason
 from extrados.decks.reader import DeckError
+from extrados.results.model import Result
 
 
 def test_a_width_is_bracketed_to_its_closed_form():
@@ -47,6 +49,19 @@ def test_a_safety_index_of_a_code_is_met_where_the_code_itself_says_so():
             keys = {**FACADE, "thickness": size} if one.key == "options.thickness" else {**FACADE, "ties": [{"height": 5.5, "force": size}]}
             verdict = run({"analysis": [{"kind": "local-mechanism", **keys}]}).verdict
             assert verdict is not None and verdict.ratio is not None and (verdict.ratio >= 1.0) is stands
+
+
+def test_an_interrupted_run_ends_the_sizing(monkeypatch):
+    """An interruption is no statement about the building: no size is said to miss the target by it."""
+    monkeypatch.setattr(measures, "run_one", lambda *given: Result("local-mechanism", "interrupted", "interrupted before"))
+    tables = {
+        "kind": "strengthen",
+        "by": "local-mechanism",
+        "safety_factor": 1.0,
+        "options": FACADE,
+        "changes": [{"vary": "options.thickness", "stop": "1.5 m"}],
+    }
+    assert run({"analysis": [tables]}).status == "interrupted"
 
 
 STATUE = {

@@ -7,6 +7,7 @@ import pytest
 
 from extrados import interrupts
 from extrados.core import calls
+from extrados.core.errors import Cancelled
 from extrados.core.threads import Worker
 
 
@@ -49,3 +50,14 @@ def test_a_signal_that_was_looked_at_is_left_to_who_looked() -> None:
         assert calls.cancel_requested()
         signal.raise_signal(signal.SIGINT)  # again, of somebody who waits for the end
     del interrupts.asked[before:]
+
+
+def test_what_begins_after_an_interruption_is_not_interrupted() -> None:
+    before = len(interrupts.asked)
+    with calls.interruptible():
+        signal.raise_signal(signal.SIGINT)
+        with pytest.raises(Cancelled):
+            calls.stop_if_asked()
+    del interrupts.asked[before:]
+    assert not calls.cancel_requested()
+    calls.stop_if_asked()

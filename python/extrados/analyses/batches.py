@@ -21,7 +21,8 @@ import numpy as np
 from extrados.analyses import workers
 from extrados.analyses.context import Context, Refused
 from extrados.core.calls import cancel_requested, interruptible, thread_count
-from extrados.core.errors import Cancelled, status_code
+from extrados.core.calls import stop_if_asked as stop_if_asked
+from extrados.core.errors import Cancelled
 from extrados.core.threads import Worker
 from extrados.model.errors import WHOLE
 from extrados.results.checkpoint import fingerprint
@@ -138,18 +139,11 @@ def computed(context: Context | None, name: str, job: Job, count: int, text: str
     return sweep(context, name, job, count, text, **how).whole()
 
 
-def stop_if_asked() -> None:
-    """Cancelled where the user has asked for the end: for members that take long outside the core."""
-    if cancel_requested():
-        raise Cancelled(status_code("cancelled"), "interrupted")
-
-
 def stacked(rows: Callable[[int], dict[str, np.ndarray]], first: int, count: int) -> dict[str, np.ndarray]:
     """The rows of a batch from those of single members: for jobs whose members take long."""
     found = []
     for k in range(first, first + count):
-        if cancel_requested():
-            raise Cancelled(status_code("cancelled"), "interrupted")
+        stop_if_asked()
         found.append(rows(k))
     return {name: np.stack([one[name] for one in found]) for name in found[0]}
 

@@ -19,8 +19,7 @@ from typing import Any
 import numpy as np
 
 from extrados import interrupts
-from extrados.core.calls import cancel_requested
-from extrados.core.errors import Cancelled, status_code
+from extrados.core.calls import stop_if_asked
 from extrados.schema.isolated import environment, python_command
 
 LOOK = 0.05  # s between two looks whether the user has asked for the end
@@ -47,8 +46,7 @@ class Elsewhere:
         try:
             worker.pipe.send((first, count, threads))
             while not worker.pipe.poll(LOOK):
-                if cancel_requested():  # who leaves the block ends the process
-                    raise Cancelled(status_code("cancelled"), "interrupted")
+                stop_if_asked()  # who leaves the block ends the process
             rows, error = worker.pipe.recv()
         except (OSError, EOFError):
             with contextlib.suppress(subprocess.TimeoutExpired):

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from extrados import _core, interrupts
-from extrados.core.errors import check
+from extrados.core.errors import Cancelled, check, status_code
 from extrados.core.threads import Worker
 
 check(_core.api_support.init_libraries(), "loading the core")
@@ -103,6 +103,12 @@ def cancel_requested() -> bool:
     return bool(_core.api_support.cancel_requested())
 
 
+def stop_if_asked() -> None:
+    """Cancelled where the user has asked for the end: for what takes long outside the core."""
+    if cancel_requested():
+        raise Cancelled(status_code("cancelled"), "interrupted")
+
+
 def _ask(number: int = 0, _: object = None) -> None:
     interrupts.asked.append(number)
     _core.api_support.set_cancel(1)
@@ -185,6 +191,8 @@ def interruptible() -> Iterator[None]:
         with _lock:
             _nesting -= 1
             late = _nesting == 0 and main and bool(_core.api_support.cancel_unheard())
+            if _nesting == 0:  # what begins later was not asked to stop
+                _core.api_support.set_cancel(0)
         if late and len(interrupts.asked) > signals:
             signal.raise_signal(interrupts.asked.pop())
 

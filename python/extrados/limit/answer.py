@@ -8,6 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from extrados.core.calls import interruptible
 from extrados.limit.equilibrium import hanging_stones
 from extrados.limit.errors import CannotStand
 from extrados.limit.graphic import force_polygon, funicular
@@ -145,7 +146,7 @@ def assess(
         if limit.associated or threads < 2:
             both = [limit.collapse(direction) for direction in (1, -1)]
         else:
-            with ThreadPoolExecutor(2) as pool:
+            with interruptible(), ThreadPoolExecutor(2) as pool:
                 both = list(pool.map(limit.collapse, (1, -1)))
         (state, mechanism), (back, back_mechanism) = both
         if not back.gamma <= 0.0 <= state.gamma:

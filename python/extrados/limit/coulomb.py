@@ -16,6 +16,7 @@ import highspy
 import numpy as np
 from scipy import sparse
 
+from extrados.core.calls import stop_if_asked
 from extrados.limit.interior import RESIDUAL, SIDES, CollapseProblem, Residuals
 from extrados.limit.solver import NoAnswer, NoEquilibrium, linear_programme
 from extrados.limit.systems import Sparse
@@ -177,6 +178,7 @@ class CoulombProblem(CollapseProblem):
         cost[-1] = -1.0
         low, high = self._bounds()
         for _ in range(COHESIONS):
+            stop_if_asked()
             low[2 : 3 * m : 3], high[2 : 3 * m : 3] = -self.friction * held, self.friction * held
             try:
                 found = linear_programme(equations, system.right, system.right, cost, low, high)
@@ -202,6 +204,7 @@ class CoulombProblem(CollapseProblem):
         Also, for each end and sense that gives way (4, joints), by how much the load would fall per force gained if it did
         not.
         """
+        stop_if_asked()
         m, system = self.joints, self.system
         j, one = np.arange(m), np.ones(m)
         columns = np.concatenate([3 * j, 3 * j + 1, 3 * j + 2])

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
+from extrados.core.calls import stop_if_asked
 from extrados.limit.normal import NormalMatrix
 from extrados.limit.systems import Sparse
 
@@ -151,6 +152,7 @@ class CollapseProblem:
         best, least, since = point, np.inf, 0
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # an iteration that runs away is given up
             for _ in range(ROUNDS):
+                stop_if_asked()
                 rest = self._rest(point, friction, dilatancy)
                 fastest = max(1.0, float(np.abs(point.u).max()))
                 misfit = max(

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from extrados.core.calls import cancel_requested
-from extrados.core.errors import Cancelled, status_code
+from extrados.core.calls import stop_if_asked
 from extrados.limit.contact_points import ContactPoints, SlidingState
 from extrados.limit.errors import NoAnswer
 from extrados.limit.stiffness_factor import StiffnessFactor
@@ -137,8 +136,7 @@ class LoadPath:
 
     def _newton(self, old: _State, u: np.ndarray, gamma: float, work: float | None, hold: float, about: np.ndarray) -> _State | None:
         """The state in equilibrium after a step, with springs `hold` to the displacements `about`; None without one. Cancelled by Ctrl-C."""
-        if cancel_requested():
-            raise Cancelled(status_code("cancelled"), "interrupted")
+        stop_if_asked()
         if self.solves > self.effort:
             raise NoAnswer(f"the load path was stopped at {gamma:.4f} g, because more than {self.effort} linear systems had to be solved")
         p = self.points

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
+from extrados.core.calls import stop_if_asked
 from extrados.limit.conic import collapse_of_crushing
 from extrados.limit.contact_points import ContactPoints
 from extrados.limit.coulomb import CoulombProblem, CoulombState
@@ -98,6 +99,7 @@ class LimitAnalysis:
         self.friction, self.strength = friction, strength
         self.associated, self.starts = associated or friction is None, starts
         self.coulomb: dict[int, CoulombState] = {}  # states without dilatancy by the sense of the load, once found
+        self.unfound: dict[int, NoAnswer] = {}  # and why none was found
         self.loads = tilt_loads(assembly) if loads is None else loads
         tree = spanning_tree(assembly)
         loops = len(assembly.a) - len(assembly.mass)
@@ -255,6 +257,16 @@ class LimitAnalysis:
 
     def _coulomb(self, direction: int) -> tuple[State, Mechanism]:
         """The least collapse load found without dilatancy, from rest on; its residuals stay in `coulomb`."""
+        if direction in self.unfound:
+            raise self.unfound[direction]
+        if direction not in self.coulomb:
+            self.coulomb[direction] = self._sought(direction)
+        found = self.coulomb[direction]
+        taken = -float((found.corners * found.motion).sum())
+        return self.read_collapse(found.gamma, found.corners, found.share, found.twist, found.motion, taken)
+
+    def _sought(self, direction: int) -> CoulombState:
+        """That state; NoAnswer where no start leads to one, NoEquilibrium where nothing stands."""
         if self.strength is None and self.certificate() is not None:
             raise NoEquilibrium("no admissible thrust line")
         problem = CoulombProblem(self.equations, self._mu, direction, self._crush)
@@ -262,15 +274,14 @@ class LimitAnalysis:
         found = self._neutral(problem) or problem.least(self.starts, 0.0)
         if found is None:
             self._refuse_immovable(direction)
-            lower, upper = ("nothing" if g is None else f"{direction * g:.4f}" for g in self.without_dilatancy_between(direction))
-            raise NoAnswer(
+            lower, upper = ("nothing" if g is None else f"{direction * g:z.4f}" for g in self.without_dilatancy_between(direction))
+            self.unfound[direction] = NoAnswer(
                 "no collapse state without dilatancy was found. The collapse load lies between the value without "
                 f"friction ({lower}) and the value with dilatancy ({upper}). If a block is carried only by "
                 "friction between its neighbours, such a state may not exist"
             )
-        self.coulomb[direction] = found
-        taken = -float((found.corners * found.motion).sum())
-        return self.read_collapse(found.gamma, found.corners, found.share, found.twist, found.motion, taken)
+            raise self.unfound[direction]
+        return found
 
     def contact_points(self, direction: int) -> ContactPoints:
         """The ends of the joints as points of contact, each with a shear along the joint; forces over the total load."""
@@ -318,6 +329,7 @@ class LimitAnalysis:
         sliding dilates; None where nothing stands without friction, or no load brings down what dilates."""
 
         def load(friction: float | np.ndarray) -> float | None:
+            stop_if_asked()
             limit = LimitAnalysis(self.assembly, friction, strength=self.strength, loads=self.loads)
             try:
                 return limit.collapse(direction)[0].gamma

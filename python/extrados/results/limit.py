@@ -288,7 +288,8 @@ class Tilt(KindResults):
         slides = [least is None or self._state(one) is not None for one, (least, _) in zip(opposite, intervals, strict=True)]
         if any(slides) and all(d is not None for d, slide in zip(designs, slides, strict=True) if slide):
             known = [least for least, _ in intervals if least is not None]
-            return judge_design(min(self.capacity(one) for one in opposite), min(known, default=None), high, demand)
+            sought = self.non_associated_reason is not None
+            return judge_design(min(self.capacity(one) for one in opposite), min(known, default=None), high, demand, sought)
         if any(least is None for least, _ in intervals):
             least = min(most if least is None else least for least, most in intervals)
             return judge_dilatant(least, demand, self.non_associated_reason)
@@ -316,12 +317,13 @@ def judge_ductile(capacity: float, dry: float, demand: Demand) -> Verdict:
     return found.model_copy(update={"statement": f"{found.statement} {more}"})
 
 
-def judge_design(design: float, least: float | None, most: float, demand: Demand) -> Verdict:
-    """The least of the load paths [g], between the least state found (None: none was sought) and the upper bound, against the
-    peak of the motion."""
+def judge_design(design: float, least: float | None, most: float, demand: Demand, sought: bool = False) -> Verdict:
+    """The least of the load paths [g], between the least state found (None: none is certified, or was `sought`) and the upper
+    bound, against the peak of the motion."""
     peak = demand.peak_g
     upper = f"the {DILATANT} is {most:.3g} g" if most < inf else "no collapse mechanism exists with dilatant friction"
-    lower = "no lower value was sought" if least is None else f"the lowest value found is {least:.3g} g"
+    none = "no lower value is certified" if sought else "no lower value was sought"
+    lower = none if least is None else f"the lowest value found is {least:.3g} g"
     text = (
         f"Joints slide. The design value of the collapse acceleration (horizontal, constant) is {design:.3g} "
         f"g, the lowest of the load paths; {lower}; {upper}"

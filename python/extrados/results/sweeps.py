@@ -14,18 +14,22 @@ class GoverningMechanism(ResultModel):
     hinges: str = fact("sequence of the hinges from left to right, in words")
 
 
+#: Number of the mechanism beside a change; 0 where a certificate proves collapse under self-weight
+Beside = int | Literal["locked", "unknown"]
+
+
 class Change(ResultModel):
     """A value at which another mechanism begins to govern."""
 
     value: float = fact("value of the varied key, in the unit of the key")
-    before: int | Literal["locked"] = fact(
+    before: Beside = fact(
         "number of the mechanism that governs below this value of the key; 0: the structure cannot "
-        'stand; "locked": no collapse mechanism exists',
+        'stand; "locked": no collapse mechanism exists; "unknown": no geometry or no result',
         name="from",
     )
-    after: int | Literal["locked"] = fact(
+    after: Beside = fact(
         "number of the mechanism that governs above this value of the key; 0: the structure cannot "
-        'stand; "locked": no collapse mechanism exists',
+        'stand; "locked": no collapse mechanism exists; "unknown": no geometry or no result',
         name="to",
     )
     collapse_acceleration_g: float | None = fact("collapse acceleration at this value of the key", "g")

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import count
+from threading import Lock
 
 from extrados.core.calls import interruptible
 from extrados.limit.certificate import Certificate
@@ -19,22 +20,24 @@ def follow_paths(follow: Follow, *, patient: bool) -> list[LoadPath]:
     Without patience the effort is small, and no path is followed after one that was given up.
     """
     rows: list[LoadPath] = []
-    for ratio in RATIOS:
-        if not patient and rows and rows[-1].collapse_acceleration_g is None:
-            rows.append(_given_up(ratio, "not calculated, because the previous load path stopped without a result"))
-        else:
-            rows.append(_follow_one(follow, ratio, PATIENT if patient else QUICK))
+    with interruptible():
+        for ratio in RATIOS:
+            if not patient and rows and rows[-1].collapse_acceleration_g is None:
+                rows.append(_given_up(ratio, "not calculated, because the previous load path stopped without a result"))
+            else:
+                rows.append(_follow_one(follow, ratio, PATIENT if patient else QUICK))
     return rows
 
 
 def follow_beside(pushes: Sequence[Follow], threads: int, progress: Callable[[int, int], None]) -> list[list[LoadPath]]:
-    """The load paths of several pushes with patience, side by side; progress(paths that are done, all paths)."""
-    tasks, done = [(follow, ratio) for follow in pushes for ratio in RATIOS], count(1)
+    """The load paths of several pushes with patience, side by side; progress(paths that are done, all paths), by one thread at a time."""
+    tasks, done, telling = [(follow, ratio) for follow in pushes for ratio in RATIOS], count(1), Lock()
     progress(0, len(tasks))
 
     def one(task: tuple[Follow, float]) -> LoadPath:
         row = _follow_one(*task, PATIENT)
-        progress(next(done), len(tasks))
+        with telling:
+            progress(next(done), len(tasks))
         return row
 
     with interruptible(), ThreadPoolExecutor(max(1, min(threads, len(tasks)))) as pool:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.batches import stacked, stop_if_asked, sweep
+from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.changes import changed, read_table
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import values_of
@@ -16,6 +16,7 @@ from extrados.analyses.limit.outcome import LOCKED, UNKNOWN, Outcome, Signature,
 from extrados.analyses.limit.tables import Sweep
 from extrados.analyses.limit.variation import evaluate, spoken
 from extrados.analyses.needs import in_space
+from extrados.core.calls import stop_if_asked
 from extrados.limit.errors import CannotStand
 from extrados.limit.finite_motion import finite_motion
 from extrados.limit.programme import Mechanism
@@ -31,6 +32,7 @@ from extrados.views.building import Building
 LEVEL = 1e-6
 # Of the range: how closely changes of mechanism and the optimum are found.
 CLOSE = 1e-7
+PROVEN = (1e2, 1e4)  # times as far from a limit of collapse under self-weight its certificate is sought
 MOST_CHANGES = 40
 MOST_PICTURED = 4  # mechanisms of solids that are stored
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
@@ -116,8 +118,8 @@ def run(context: Context, options: Sweep) -> Result:
         changes=[
             out.Change(
                 value=c["value"],
-                before="locked" if c["before"] == LOCKED else numbers.get(c["before"], 0),
-                after="locked" if c["after"] == LOCKED else numbers.get(c["after"], 0),
+                before=_beside(c["before"], numbers),
+                after=_beside(c["after"], numbers),
                 collapse_acceleration_g=c["gamma"],
             )
             for c in changes
@@ -144,6 +146,11 @@ def run(context: Context, options: Sweep) -> Result:
     return result
 
 
+def _beside(signature: Signature, numbers: dict[Signature, int]) -> out.Beside:
+    """What a change tells of one of its sides."""
+    return "locked" if signature == LOCKED else "unknown" if signature == UNKNOWN else numbers.get(signature, 0)
+
+
 def _store(
     options: Sweep, r: out.Sweep, values: np.ndarray, outcomes: list[Outcome], numbers: dict[Signature, int], result: Result
 ) -> None:
@@ -163,9 +170,12 @@ def _store(
         "gamma": Array(
             gamma, ("value",), "g", "collapse acceleration towards +x; 0 for a structure that cannot stand, NaN without a result"
         ),
-        "mechanism": Array(number, ("value",), "", "number of the mechanism; 0 without a mechanism"),
+        "mechanism": Array(number, ("value",), "", "number of the mechanism; 0 if the structure cannot stand, is locked or has no result"),
         "change": Array(
-            np.array([c.value for c in r.changes]), ("change",), "", "values of the key in `vary` at which the mechanism changes"
+            np.array([c.value for c in r.changes]),
+            ("change",),
+            "",
+            "values of the key in `vary` at which the mechanism, or whether there is one, changes",
         ),
     }
     if options.fracture:
@@ -211,7 +221,9 @@ class Between:
 
     def _changes(self, low: End, high: End) -> list[dict[str, Any]]:
         found: list[dict[str, Any]] = []
-        while low.signature != high.signature and len(found) < MOST_CHANGES:
+        for _ in range(MOST_CHANGES):
+            if low.signature == high.signature:
+                break
             before, after = low, high
             while after.value - before.value > self.close:
                 middle = self._at(0.5 * (before.value + after.value))
@@ -219,15 +231,28 @@ class Between:
                     before = middle
                 else:
                     after = middle
-            gamma = before.gamma if before.signature not in ((), UNKNOWN) else after.gamma
-            found.append({"value": after.value, "before": before.signature, "after": after.signature, "gamma": gamma})
-            low = after
+            sides = self._certified(before, low.value), self._certified(after, high.value)
+            low, (before, after) = after, sides
+            if before.signature != after.signature:
+                gamma = before.gamma if before.signature not in ((), UNKNOWN) else after.gamma
+                found.append({"value": after.value, "before": before.signature, "after": after.signature, "gamma": gamma})
         return found
 
-    def _at(self, value: float) -> End:
+    def _at(self, value: float, explain: bool = False) -> End:
         stop_if_asked()
-        found = self.ask.at(value)
+        found = self.ask.at(value, explain=explain)
         return End(value, found.signature, found.gamma)
+
+    def _certified(self, end: End, away: float) -> End:
+        """An end that the bisection took for collapse under self-weight, unknown without a certificate towards the value `away`: at
+        the end itself the weights do no more work than rounding does."""
+        if end.signature != () or end.gamma is not None:
+            return end
+        for beyond in PROVEN:
+            step = min(beyond * self.close, abs(away - end.value))
+            if self._at(end.value + float(np.copysign(step, away - end.value)), True).signature == ():
+                return end
+        return End(end.value, UNKNOWN, None)
 
 
 def _changes(context: Context, ask: Range, values: np.ndarray, outcomes: list[Outcome]) -> list[dict[str, Any]]:
@@ -362,7 +387,7 @@ def _words(options: Sweep, r: out.Sweep, located: bool) -> str:
         f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{unit}: the greatest collapse acceleration is {most:.4f} g "
         f"({r.optimum_tilt_angle_deg:.2f} degrees), {where}. {len(r.mechanisms)} mechanism{'s' if len(r.mechanisms) != 1 else ''}"
     )
-    moves = [f"{c.before} to {c.after} at {c.value:.4g}" for c in r.changes if c.before and c.after]
+    moves = [f"{c.before} to {c.after} at {c.value:.4g}" for c in r.changes if {c.before, c.after}.isdisjoint({0, "unknown"})]
     locked = ", ".join(f"{v:.4g}" for v in r.locked_limits)
     text += f"; changes {', '.join(moves[:8])}." if moves else "."
     if not located:

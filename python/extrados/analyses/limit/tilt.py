@@ -26,6 +26,7 @@ from extrados.analyses.limit.common import (
 from extrados.analyses.limit.paths import doubt, follow_beside, follow_paths
 from extrados.analyses.limit.tables import Tilt
 from extrados.analyses.needs import in_space
+from extrados.core.calls import interruptible
 from extrados.limit.answer import CENTRAL, Answer
 from extrados.limit.certificate import Certificate, certify
 from extrados.limit.coulomb import CoulombState
@@ -69,14 +70,13 @@ def run(context: Context, options: Tilt) -> Result:
 
         return solids.run(context, options)
     assembly: Assembly = building.blocks()
-    limit = limit_of(building, options)
-    answer = answer_of(building, options, limit, context.threads)
+    answer, limit, asked = _answer(context, options)
     state, mechanism = answer.collapse_state, answer.mechanism
     result = Result("tilt")
     measures: Keys = assembly.measures
     fracture = _fracture(building, options, answer, result) if options.fracture else {}
     dilating = {1: limit.dilating(mechanism), -1: limit.dilating(answer.back_mechanism)}
-    sliding = _without_dilatancy(context, limit, answer, dilating, result)
+    sliding = _without_dilatancy(context, limit, answer, dilating, result, asked)
     found = out.Tilt(
         collapse_acceleration_g=state.gamma,
         collapse_acceleration_opposite_g=-answer.back_state.gamma,
@@ -141,6 +141,20 @@ def run(context: Context, options: Tilt) -> Result:
     return result
 
 
+def _answer(context: Context, options: Tilt) -> tuple[Answer, LimitAnalysis, LimitAnalysis | None]:
+    """The answer and its analysis; where the deck's analysis without dilatancy has no state, that of dilatant friction, an upper
+    bound, and the analysis that the deck asks for."""
+    building = context.building
+    limit = limit_of(building, options)
+    try:
+        return answer_of(building, options, limit, context.threads), limit, None
+    except NoAnswer:
+        if limit.associated:
+            raise
+    bound = limit_of(building, options.model_copy(update={"friction_rule": "associated"}))
+    return answer_of(building, options, bound), bound, limit
+
+
 def _film(limit: LimitAnalysis, answer: Answer) -> dict[str, Array]:
     """Lines of least and greatest thrust of the first chain as the ground is tilted to collapse; none without a chain."""
     if not answer.least or answer.gamma <= 0.0:
@@ -194,13 +208,24 @@ def _admissible(answer: Answer, sliding: dict[str, object]) -> list[float]:
     return [low, high]
 
 
-def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, dilating: dict[int, list[int]], result: Result) -> Keys:
+def _without_dilatancy(
+    context: Context,
+    limit: LimitAnalysis,
+    answer: Answer,
+    dilating: dict[int, list[int]],
+    result: Result,
+    asked: LimitAnalysis | None = None,
+) -> Keys:
     """Least states without dilatancy and their certificates: of both senses where the deck asks for that rule, and beside
-    the upper bound of associated friction of each sense in whose mechanism pressed joints slide."""
+    the upper bound of associated friction of each sense in whose mechanism pressed joints slide.
+
+    asked: the analysis without dilatancy that the deck asks for, where it gave no state in one sense or both; load paths are
+    then followed with patience in each.
+    """
     told: Keys = {}
     if limit.associated and limit.friction is not None:
         told |= {"dilating_joints": dilating[1], "dilating_joints_opposite": dilating[-1]}
-    beside = limit.without_dilatancy() if limit.associated and any(dilating.values()) else limit
+    beside = asked or (limit.without_dilatancy() if limit.associated and any(dilating.values()) else limit)
     followed, bounds = ({}, {}) if limit.associated else _side_by_side(context, limit)
     for direction, end in ((1, ""), (-1, "_opposite")):
         try:
@@ -208,18 +233,21 @@ def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, d
                 forth, back = (answer.collapse_state, answer.mechanism), (answer.back_state, answer.back_mechanism)
                 pair = forth if direction > 0 else back
             elif dilating[direction]:
-                pair = collapse_beside(beside, direction)
+                pair = collapse_beside(beside, direction) if asked is None else asked.collapse(direction)
             else:
                 continue
         except (NoAnswer, NoEquilibrium) as error:
             told["non_associated_reason"] = str(error)
+            if asked is not None and limit.strength is None:
+                paths, _ = _paths(context, asked, [direction], patient=True)[direction]
+                told |= _told_paths(paths, direction, result)
             continue
         way = "to +x" if direction > 0 else "to -x"
         if limit.strength is not None:
             result.warnings.append(
                 f"Load paths {way} do not include crushing, so there is no design value. The capacity is the lowest value found."
             )
-        elif limit.associated and len(limit.assembly.a) > MOST_FOLLOWED:
+        elif limit.associated and asked is None and len(limit.assembly.a) > MOST_FOLLOWED:
             result.warnings.append(
                 f"Load paths {way} are not calculated, because the structure has more than {MOST_FOLLOWED} "
                 "joints, so there is no design value. The capacity is the lowest value found. To calculate load "
@@ -227,17 +255,12 @@ def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, d
             )
         elif beside.coulomb[direction].falling is None:
             if direction not in followed:
-                followed |= _paths(context, beside, [direction], patient=False)
+                followed |= _paths(context, beside, [direction], patient=asked is not None)
             paths, ends = followed[direction]
             lowest = min(ends, key=lambda one: direction * one[0].gamma, default=pair)
             if direction * (pair[0].gamma - lowest[0].gamma) > out.SAME:
                 pair = lowest  # below the states that the programmes found
-            told[f"load_paths{end}"] = paths
-            design = out.design_value(paths)
-            if design is not None:
-                told[f"collapse_acceleration_load_path{end}_g"] = design
-            if told_doubt := doubt(paths, way):
-                result.warnings.append(told_doubt)
+            told |= _told_paths(paths, direction, result)
         found = beside.coulomb[direction]
         if direction not in bounds:
             bounds[direction] = beside.without_dilatancy_between(direction)
@@ -265,6 +288,15 @@ def _without_dilatancy(context: Context, limit: LimitAnalysis, answer: Answer, d
     return told
 
 
+def _told_paths(paths: list[out.LoadPath], direction: int, result: Result) -> Keys:
+    """The keys of the load paths of one sense; a warning where some are not certified."""
+    end, way = ("", "to +x") if direction > 0 else ("_opposite", "to -x")
+    if told_doubt := doubt(paths, way):
+        result.warnings.append(told_doubt)
+    design = out.design_value(paths)
+    return {f"load_paths{end}": paths} | ({} if design is None else {f"collapse_acceleration_load_path{end}_g": design})
+
+
 def _least_state(
     found: CoulombState, proof: Certificate, certified: bool, lower: float | None, upper: float | None, direction: int
 ) -> out.NonDilatant:
@@ -290,7 +322,7 @@ def _side_by_side(context: Context, limit: LimitAnalysis) -> tuple[dict[int, Pat
     followed: dict[int, Paths] = {}
     if limit.strength is None:
         followed |= _paths(context, limit, [d for d in (1, -1) if limit.coulomb[d].falling is None], patient=True)
-    with ThreadPoolExecutor(max(1, min(2, context.threads))) as pool:
+    with interruptible(), ThreadPoolExecutor(max(1, min(2, context.threads))) as pool:
         return followed, dict(zip((1, -1), pool.map(limit.without_dilatancy_between, (1, -1)), strict=True))
 
 
@@ -391,14 +423,14 @@ def _told(found: out.Tilt) -> str:
     bounds = [way for way, dilating, *_ in ends if dilating]
     text = f"Under the load {' and '.join(bounds)}, joints slide, so the capacity is an {out.DILATANT}. " if bounds else ""
     for way, _, r, least, design, paths in ends:
+        if design is not None and paths is not None:
+            text += (
+                f"Without dilatancy, the design value {way} is {design:.4f} g, the lowest of {len(paths)} load paths with elastic joints. "
+            )
         if r is None or least is None:
             continue
         upper = "none" if r.associated_g is None else f"{r.associated_g:.4f} g"
         lower = "nothing stands" if r.frictionless_g is None else f"{r.frictionless_g:z.4f} g"
-        if design is not None:
-            text += (
-                f"Without dilatancy, the design value {way} is {design:.4f} g, the lowest of {len(paths)} load paths with elastic joints. "
-            )
         text += (
             f"The lowest of {len(r.starts_g)} collapse accelerations found {way} is {least:.4f} g (scatter {r.spread_g:.4f} g). The "
             f"lower bound without friction is {lower}, and the upper bound with dilatancy is {upper}. "

@@ -96,7 +96,7 @@ def _evaluate(
         try:
             reason = f"cannot stand: {cannot_stand(limit)}"
         except (NoEquilibrium, NoAnswer) as error:
-            return Outcome(reason=str(error), assembly=assembly, measures=measures_of(assembly))
+            return Outcome(signature=UNKNOWN, reason=str(error), assembly=assembly, measures=measures_of(assembly))
         return Outcome(0.0, reason=reason, assembly=assembly, measures=measures_of(assembly))
     except NoAnswer as error:
         return Outcome(signature=UNKNOWN, reason=str(error), assembly=assembly, measures=measures_of(assembly))

@@ -8,9 +8,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from extrados.analyses.batches import stacked, stop_if_asked
+from extrados.analyses.batches import stacked
 from extrados.analyses.context import Refused
 from extrados.core import motion as core
+from extrados.core.calls import stop_if_asked
 from extrados.motions import directions
 from extrados.motions import tables as models
 from extrados.motions.from_deck import compatible_motion, generated_motion, numbered

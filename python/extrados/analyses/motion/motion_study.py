@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.batches import stop_if_asked, sweep
+from extrados.analyses.batches import sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.motion.members import Generated, Held, Matched, Measures, Members, PrimaryImpulses, Spectra, rotd_peaks, series
 from extrados.analyses.motion.tables import MotionStudy
 from extrados.analyses.motion_source import shortened
 from extrados.core import motion as core
-from extrados.core.calls import interruptible
+from extrados.core.calls import interruptible, stop_if_asked
 from extrados.motions import directions, export
 from extrados.motions import tables as models
 from extrados.motions.formats.record import RecordError

@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.batches import stop_if_asked
 from extrados.analyses.strengthen.alternatives import ChangeAlternative
 from extrados.analyses.strengthen.measures import Runs, Statics, Worth, safest, with_value
 from extrados.analyses.strengthen.rows import Found, Means, row_of, volume_of, with_lapses
 from extrados.analyses.strengthen.sizing import Sized, Sizing
+from extrados.core.calls import stop_if_asked
 from extrados.decks.reader import DeckError, make_deck
 from extrados.model.errors import BadGeometry
 from extrados.results import strengthen as out

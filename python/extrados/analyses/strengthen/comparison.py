@@ -4,10 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.sequence import run_one
 from extrados.analyses.statistics.summaries import wilson
 from extrados.analyses.strengthen.alternatives import TieAlternative
-from extrados.analyses.strengthen.measures import Statics, nested, plain_data, unmet_reason
+from extrados.analyses.strengthen.measures import Statics, nested, plain_data, run_part, unmet_reason
 from extrados.analyses.strengthen.rows import NAMED, placed
 from extrados.analyses.strengthen.sizing import Sized, Sizing
 from extrados.decks.reader import DeckError, make_deck
@@ -89,7 +88,7 @@ def _assess(work: Sizing, name: str, data: dict[str, Any]) -> list[StrategyVerdi
     except DeckError as error:
         work.context.warnings.append(f"The assessment of {name} was refused: {'; '.join(error.complaints)}")
         return None
-    found = run_one(nested(work.context, deck), deck.analyses[0], deck.buildings[0])
+    found = run_part(nested(work.context, deck))
     if not isinstance(found.results, Assess):
         work.context.warnings.append(f"The assessment of {name} has no result: {found.reason}")
         return None
@@ -103,7 +102,7 @@ def compare_fragility(work: Sizing, best: Sized) -> out.FragilityPair:
     found: list[OverLevels | None] = []
     for data in (plain_data(work.context), best.data or {}):
         deck = make_deck({**data, "analysis": [asked]}, work.context.deck.folder)
-        result = run_one(nested(work.context, deck), deck.analyses[0], deck.buildings[0])
+        result = run_part(nested(work.context, deck))
         if not isinstance(result.results, OverLevels):
             work.context.warnings.append(f"No fragility curve: {result.reason or result.answer}")
             found.append(None)

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.batches import stop_if_asked
 from extrados.analyses.context import Context
 from extrados.analyses.strengthen.alternatives import ChangeAlternative, TieAlternative, change_alternatives, is_spatial, tie_alternatives
 from extrados.analyses.strengthen.change_sizes import size_change
@@ -15,6 +14,7 @@ from extrados.analyses.strengthen.sizing import Sized, Sizing
 from extrados.analyses.strengthen.space import SpaceStatics
 from extrados.analyses.strengthen.tables import Strengthen
 from extrados.analyses.strengthen.tie_sizes import size_tie
+from extrados.core.calls import stop_if_asked
 from extrados.results import strengthen as out
 from extrados.results.model import Result
 

@@ -15,6 +15,7 @@ from extrados.analyses.limit.variation import signature
 from extrados.analyses.sequence import run_one
 from extrados.analyses.strengthen.alternatives import TieAlternative
 from extrados.analyses.strengthen.tables import Strengthen
+from extrados.core.errors import Cancelled, status_code
 from extrados.decks.reader import Deck, DeckError, make_deck
 from extrados.limit.answer import cannot_stand
 from extrados.limit.errors import Immovable, NoAnswer, NoEquilibrium
@@ -24,6 +25,7 @@ from extrados.limit.strengthening import Point, least_force, least_forces, taken
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.solids.assembly import SolidAssembly
+from extrados.results.model import Result
 from extrados.results.statistics import Ensemble
 from extrados.results.verdict import SelfWeight
 from extrados.schema.constants import GRAVITY
@@ -290,7 +292,7 @@ class Runs:
         except DeckError as error:
             return Worth(None, reason="; ".join(error.complaints))
         context = nested(self.context, deck)
-        result = run_one(context, deck.analyses[0], deck.buildings[0])
+        result = run_part(context)
         if result.status != "ok":
             return Worth(None, reason=result.reason)
         if isinstance(result.results, SelfWeight) and not result.results.proven:
@@ -365,6 +367,15 @@ def nested(context: Context, deck: Deck) -> Context:
     whole = context.deck
     deck = replace(deck, sha256=whole.identity, path=whole.path)
     return Context(deck, context.threads, motions=context.motions)
+
+
+def run_part(context: Context) -> Result:
+    """The result of the one analysis of a part; Cancelled where it was interrupted, which says nothing about the building."""
+    (options,), (building,) = context.deck.analyses, context.deck.buildings
+    result = run_one(context, options, building)
+    if result.status == "interrupted":
+        raise Cancelled(status_code("cancelled"), result.reason)
+    return result
 
 
 def with_value(context: Context, options: Strengthen, key: str, value: float) -> tuple[dict[str, Any], dict[str, Any] | None]:

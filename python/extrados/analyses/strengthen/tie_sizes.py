@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from extrados.analyses.batches import stop_if_asked
 from extrados.analyses.strengthen.alternatives import TieAlternative, word_of
 from extrados.analyses.strengthen.measures import Runs, Statics, Worth, plain_data, reached, safest
 from extrados.analyses.strengthen.rows import Found, Means, masses_of, middle_of, placed, row_of, with_debonding, with_lapses
 from extrados.analyses.strengthen.sizing import HALVINGS, Sized, Sizing
+from extrados.core.calls import stop_if_asked
 from extrados.limit.errors import Immovable, NoAnswer, NoEquilibrium
 from extrados.limit.strengthening import Point, concave_curve, pieces_of
 from extrados.results import strengthen as out

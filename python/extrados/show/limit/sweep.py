@@ -39,7 +39,7 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 continue
             shown = change.value
             ax.annotate(
-                f"{change.before or 'falls'}|{change.after or 'falls'}",
+                "|".join({0: "falls", "unknown": "?"}.get(side, str(side)) for side in (change.before, change.after)),
                 (change.value, 1.0),
                 xycoords=("data", "axes fraction"),
                 ha="center",
@@ -71,7 +71,7 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             (
                 style.save(fig, folder, f"{name}-curve"),
                 (
-                    "Tilt at collapse. Dotted: values at which another mechanism begins. Crosses: the structure "
+                    "Tilt at collapse. Dotted: values at which another mechanism begins (?: no result). Crosses: the structure "
                     "collapses under self-weight. Points on the axis: no result, or no collapse at any tilt."
                 ),
             )
