@@ -93,30 +93,30 @@ class TurningValue(ResultModel):
     unit: str = fact("unit of the value")
     low: float = fact("value below that of the deck")
     high: float = fact("value above that of the deck")
-    tilt_base: float | None = fact("safety factor by limit analysis, with the value of this key in the deck; null without a result")
-    rocking_base: float | None = fact("safety factor by rocking, with the value of this key in the deck; null without a result")
-    tilt_low: float | None = fact("safety factor by limit analysis, with the value `low` of this key; null without a result")
-    tilt_high: float | None = fact("safety factor by limit analysis, with the value `high` of this key")
-    rocking_low: float | None = fact("safety factor by rocking, with the value `low` of this key")
-    rocking_high: float | None = fact("safety factor by rocking, with the value `high` of this key")
+    tilt_base: float | None = fact("safety factor by limit analysis, with the value `base` of the key; null without a result")
+    rocking_base: float | None = fact("safety factor by rocking, with the value `base` of the key; null without a result")
+    tilt_low: float | None = fact("safety factor by limit analysis, with the value `low` of the key; null without a result")
+    tilt_high: float | None = fact("safety factor by limit analysis, with the value `high` of the key")
+    rocking_low: float | None = fact("safety factor by rocking, with the value `low` of the key")
+    rocking_high: float | None = fact("safety factor by rocking, with the value `high` of the key")
     tilt_turns: float | None = fact(
-        "value of this key at which the verdict of limit analysis changes; null if no calculated value changes the verdict"
+        "value of the key at which the verdict of limit analysis changes; null if no calculated value changes the verdict"
     )
     rocking_turns: float | None = fact(
-        "value of this key at which the verdict of rocking changes; null if no calculated value changes the verdict"
+        "value of the key at which the verdict of rocking changes; null if no calculated value changes the verdict"
     )
     dem_base: float | None = fact(
-        "displacement by discrete elements, with the value of this key in the deck, divided by the "
+        "displacement by discrete elements, with the value `base` of the key, divided by the "
         "displacement that counts as collapse; null without a run"
     )
     dem_low: float | None = fact(
-        "displacement by discrete elements, with the value `low` of this key, divided by the displacement that counts as collapse"
+        "displacement by discrete elements, with the value `low` of the key, divided by the displacement that counts as collapse"
     )
     dem_high: float | None = fact(
-        "displacement by discrete elements, with the value `high` of this key, divided by the displacement that counts as collapse"
+        "displacement by discrete elements, with the value `high` of the key, divided by the displacement that counts as collapse"
     )
     dem_turns: float | None = fact(
-        "value of this key at which the verdict of discrete elements changes; null if no calculated value changes the verdict, or if "
+        "value of the key at which the verdict of discrete elements changes; null if no calculated value changes the verdict, or if "
         "the response is chaotic"
     )
 

@@ -141,8 +141,8 @@ class BlocksRun(KindResults):
     )
     edge_stress_at_rest_Pa: float | None = maybe(
         "greatest compressive stress at an edge or corner of a joint at the start of the motion (constant loads, and with the initial "
-        "rotation if there is one): linear pressure without tension; "
-        "null if an edge or a corner alone carries the load",
+        "rotation if there is one): linear pressure without tension. On rigid contacts it includes the ground motion of the first time "
+        "step. Null if an edge or a corner alone carries the load",
         "Pa",
     )
     ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each of its segments")

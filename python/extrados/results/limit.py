@@ -200,7 +200,7 @@ class Tilt(KindResults):
     )
     load_paths: list[LoadPath] = maybe("load paths towards +x, one for each ratio of joint stiffness")
     load_paths_opposite: list[LoadPath] = maybe("load paths towards -x, one for each ratio of joint stiffness")
-    non_associated_reason: str = maybe("reason why no collapse state without dilatancy is given besides the upper bound")
+    non_associated_reason: str = maybe("reason for the missing collapse state without dilatancy, if only the upper bound is given")
     touching_joints: list[int] = fact("joints in which the thrust line reaches an end of the joint without forming a hinge")
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires at collapse")
     required_friction_joint: int = fact("the joint that needs it")

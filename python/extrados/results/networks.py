@@ -40,8 +40,8 @@ class ThrustNetwork(KindResults):
     )
     load_direction_deg: float = fact("direction of the horizontal load in plan", "deg")
     horizontal_load_g: float | None = fact(
-        "greatest horizontal load (at the nodes, divided by the weight) that a network carries; null if no network was found, or if the "
-        "load has no limit. With the load at the centroids of the blocks, the collapse load can be less",
+        "greatest horizontal load that a network carries, divided by the weight; null if no network was found, or if the load has no "
+        "limit. The load acts at the nodes. Inertia forces act at the centroids of the blocks, so the collapse load can be less",
         "g",
     )
     horizontal_load_bound_g: float | None = fact(
@@ -49,7 +49,7 @@ class ThrustNetwork(KindResults):
     )
     weight_N: float = fact("weight of the structure", "N")
     equilibrium_residual: float = fact("greatest unbalanced force at a node, divided by the weight")
-    thickness_m: float = fact("median thickness of the blocks across the branches of the most central network", "m")
+    thickness_m: float = fact("median thickness of the blocks, measured perpendicular to the branches of the most central network", "m")
     central_outside_m: float = fact(
         "greatest distance by which branches with a force pass outside the blocks between two nodes, in the most central network", "m"
     )

@@ -168,8 +168,8 @@ class Rocking(KindResults):
         "rocking against a wall: ratio of angular velocity after / before the rebound, from the deck or from three impacts"
     )
     energy_residual_ratio: float = fact(
-        "greatest error of the energy balance, divided by the greatest mechanical energy (on a compliant base, by its range), or by the work of "
-        "the ground if this is greater"
+        "greatest error of the energy balance, divided by the greatest mechanical energy or by the work of the ground, "
+        "whichever is greater. On a compliant base, the range of the mechanical energy replaces its greatest value"
     )
     steps: int = fact("number of time steps of the integrator")
     rejected_steps: int = fact("number of rejected time steps")
@@ -262,7 +262,7 @@ class AtAmplitudes(ResultModel):
 class RuleCurve(ResultModel):
     """The failure curve by an impact rule."""
 
-    rule: str = fact("impact rule: a value of [joints] `restitution`")
+    rule: str = fact("impact rule, by its name in [joints] `restitution`")
     restitution: float = fact(
         "coefficient of restitution (angular velocity after / before impact), limited to values from 0 "
         "to 1; for a mechanism, at the impact that starts rocking towards +x"

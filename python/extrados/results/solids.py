@@ -131,7 +131,7 @@ class SolidTilt(KindResults):
         "sliding without dilatancy, for each direction: along the load direction, opposite, and lowest "
         'capacity; with `friction_rule` = "non-associated", for all directions'
     )
-    non_associated_reason: str = maybe("reason why no collapse state without dilatancy is given besides the upper bound")
+    non_associated_reason: str = maybe("reason for the missing collapse state without dilatancy, if only the upper bound is given")
     collapse_acceleration_face_law_g: float = maybe(
         "upper bound along the load direction by the face law (friction and torsion of whole faces under uniform pressure). "
         "`collapse_acceleration_g` follows the corner law, which allows the pressure to concentrate",

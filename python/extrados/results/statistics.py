@@ -532,7 +532,7 @@ class HarmonicMap(KindResults):
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all cells of the map")
     handed_over: int = maybe(
-        "number of cells of the map that were continued with rigid contacts, because joints slide or "
+        "number of cells of the map whose motion was continued with rigid contacts, because in these cells joints slide or "
         "hinges form outside the rocking mechanism",
         source="Moreau 1988",
     )

@@ -128,12 +128,15 @@ def _wall_curves(ax: Axes, run: Stored, name: str, prefix: str) -> None:
     held = (run.array(name, f"{prefix}event_equilibrium")[event] > 0) & (d >= np.maximum.accumulate(d))
     if held.sum() < LEAST_STATES:
         return
-    d = d[held]
+    d, most = d[held], np.abs(run.array(name, f"{prefix}event_load")).max() / 1e3
     for k, wall in enumerate(_numbers(run, name, prefix).walls):
         shear = run.array(name, f"{prefix}state_wall_shear")[held, k] / 1e3
-        if np.abs(shear).max() > 0.01 * np.abs(run.array(name, f"{prefix}event_load")).max() / 1e3:
+        if np.abs(shear).max() > 0.01 * most:
             ax.plot(d, shear, marker=".", markersize=3, linewidth=0.9, linestyle=("--", ":", "-.")[k % 3], color="#8a6d3b")
-            ax.annotate(f"wall {wall.wall}", (d[0], shear[0]), fontsize=7, color="#8a6d3b", ha="right")
+            height = shear[0]
+            while any(abs(height - text.get_position()[1]) < 0.035 * most for text in ax.texts):
+                height += 0.01 * most  # above the names that are there
+            ax.text(d[0], height, f"wall {wall.wall}", fontsize=7, color="#8a6d3b", ha="right")
 
 
 def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:

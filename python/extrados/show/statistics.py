@@ -303,7 +303,7 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.plot(middle, level, "-", color=style.HINGE, linewidth=2.0, label="median of the motions")
         i, j = np.nonzero(risen)
         if len(i):
-            ax.plot(ratio[i, j], level[j], "o", color=style.GROUND, markersize=3, label="no overturning above a level that overturns")
+            ax.plot(ratio[i, j], level[j], "o", color=style.GROUND, markersize=3, label="no overturning, although a lower level overturns")
         ax.axvline(1.0, color=style.THRUST, linewidth=0.9)
         ax.axvline(place, color=style.EDGE, linewidth=0.6, linestyle=":")
         ax.set_xlim(-0.02, place + 0.03)

@@ -105,7 +105,7 @@ class Tilt(SpatialLimit, Animated):
         source="after Orduna and Lourenco 2005",
     )
     block_size: bool | None = key(
-        None, "for solids: also calculate the capacity with blocks half as long, in one direction at a time, and with the other bonds"
+        None, "for solids: also calculate the capacity with blocks half as long (in each direction separately), and with each other bond"
     )
     pyramids: int | None = key(
         None,

@@ -147,7 +147,7 @@ def warn_unequal_drives(options: Pushover, numbers: dict[str, Any]) -> list[str]
     return [
         (
             "The `drives` move their storeys by different ratios. The load of the curve is therefore the work of all drives divided by "
-            f"the control displacement, not the base shear. At the greatest load of {engineering(load, 'N')}, the walls carry "
-            f"{engineering(carried, 'N')} along the load at their feet. Compare measured base shears with this value."
+            f"the control displacement, not the base shear. At the greatest load of {engineering(load, 'N')}, the base shear "
+            f"of the walls in the direction of the load is {engineering(carried, 'N')}. Compare measured base shears with this base shear."
         )
     ]

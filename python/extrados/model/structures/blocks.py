@@ -157,9 +157,9 @@ class Blocks(Structure):
     )
     section: Plane | None = key(
         None,
-        "for a file in space: plane that is read as the section; its second letter is the vertical axis. Default for "
-        "DXF, and for OBJ and STL without volume: the plane that contains all lines and faces. With this "
-        "key, solids of OBJ and STL that are prisms perpendicular to the plane are read as a section",
+        "for a file in space: plane that is read as the section; its second letter is the vertical axis. If this key is "
+        "given, solids of OBJ and STL that are prisms perpendicular to the plane are read as a section. Default for "
+        "DXF, and for OBJ and STL without volume: the plane that contains all lines and faces",
     )
     layers: list[str] | None = key(None, "layers of the drawing that are read as blocks; default: all layers", max_length=200)
     layer: list[LayerTable] = key([], "layers of the drawing with a material or another meaning, [[structure.layer]]", max_length=200)

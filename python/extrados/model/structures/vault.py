@@ -95,8 +95,8 @@ class Vault(PresetStructure):
     kind: Literal["vault"]
     preset: Literal["dejong-a", "dejong-b"] | None = key(
         None,
-        "dimensions of the vault in thesis 3.4, inferred from the results there (two interpretations); "
-        "keys in the deck replace single dimensions",
+        "dimensions of the vault in thesis 3.4, inferred from the results there. Each preset is one interpretation; "
+        "keys in the deck replace individual dimensions",
     )
     radius: Length = key(about="radius of the centre line of the vault", gt=0)
     thickness: Length = key(about="thickness of the vault", gt=0)
