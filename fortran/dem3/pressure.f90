@@ -58,6 +58,7 @@ contains
       real(wp), intent(out) :: energy            !! of the face, without that of the springs [J]
       logical, intent(out) :: converged
       real(wp), parameter :: fine = 1.0e-9_wp    !! of the greatest force that presses
+      real(wp), parameter :: coarse = 1.0e-6_wp  !! of the same: rounding may keep the search from the fine one, not from this
       real(wp), parameter :: rounding = 1.0e-13_wp   !! of the greatest force
       integer, parameter :: most_rounds = 60, most_cuts = 40
       real(wp) :: value, next_value, share, descent, tolerance
@@ -88,7 +89,7 @@ contains
             overlap = next
             value = next_value
          end do
-         converged = maxval(abs(slope)) <= tolerance
+         converged = maxval(abs(slope)) <= max(tolerance, coarse * maxval(trial))
          force = max(trial - spring * overlap, 0.0_wp)
       end associate
 
