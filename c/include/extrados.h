@@ -86,7 +86,9 @@ EXTRADOS_API int extrados_sparse_again(void *handle, int vectors, double *z);
 EXTRADOS_API int extrados_band_factor(int64_t n, int64_t width, double *band);
 EXTRADOS_API void extrados_band_solve(int64_t n, int64_t width, const double *band, double *x);
 
-/* envelope.c: `rows` (3 or 6) rows of Cholesky's factor from row i on, in the columns before i; the rows above are those of the factor */
-EXTRADOS_API void extrados_envelope_rows(int32_t rows, int32_t i, const int32_t *first, const int32_t *start, double *a);
+/* envelope.c: `rows` (3 or 6) rows of Cholesky's factor from row i on, in the columns before i; the rows above are those of the factor;
+ * invalid_argument for any other number of rows */
+EXTRADOS_API void extrados_envelope_rows(int32_t rows, int32_t i, const int32_t *first, const int32_t *start, double *a,
+                                         int32_t *status);
 
 #endif

@@ -42,7 +42,8 @@ static void meet_three(int32_t i, const int32_t *first, const int32_t *start, do
 FOR_EACH_PROCESSOR
 static void meet_six(int32_t i, const int32_t *first, const int32_t *start, double *a) { meet_rows(6, i, first, start, a); }
 
-void extrados_envelope_rows(int32_t rows, int32_t i, const int32_t *first, const int32_t *start, double *a) {
+void extrados_envelope_rows(int32_t rows, int32_t i, const int32_t *first, const int32_t *start, double *a, int32_t *status) {
+  *status = rows == 3 || rows == 6 ? EXTRADOS_ok : EXTRADOS_invalid_argument;
   if (rows == 3) meet_three(i, first - 1, start - 1, a - 1);
   if (rows == 6) meet_six(i, first - 1, start - 1, a - 1);
 }

@@ -200,14 +200,29 @@ contains
       real(wp), intent(in) :: was               !! gap by what met before, at the present places [m]
       real(wp), intent(in) :: now               !! gap by what meets now [m]
       real(wp), intent(inout) :: given_up(2)    !! see contact_pair
-      real(wp) :: pressed, presses
+      real(wp) :: pressed, presses, crushed, remains
       if (point%bonded) return
       pressed = min(was - point%filled, 0.0_wp)
       if (.not. point%closed) pressed = 0.0_wp
       presses = max(pressed, min(now, 0.0_wp))
       point%filled = min(now, 0.0_wp) - presses
-      given_up(2) = given_up(2) + 0.5_wp * point%length * (pressed**2 - presses**2)
+      ! What has crushed at a constant force comes back first
+      crushed = min(point%crushed, -pressed)
+      remains = max(crushed - (presses - pressed), 0.0_wp)
+      given_up(2) = given_up(2) + 0.5_wp * point%length * (pressed**2 - crushed**2 - presses**2 + remains**2)
    end subroutine pass_on
+
+   !> Energy of the normal spring of a closed point over its stiffness k_n, with that of a corner that crushes: of an overlap d of which
+   !> c has crushed, l [(d - c)^2 / 2 + (d - c) c] [m^3]
+   pure function held_energy(point, gap) result(energy)
+      type(contact_point), intent(in) :: point
+      real(wp), intent(in) :: gap               !! [m]
+      real(wp) :: energy
+      real(wp) :: drawn
+      drawn = gap - point%filled
+      if (.not. point%bonded) drawn = min(drawn, 0.0_wp)
+      energy = 0.5_wp * point%length * max(drawn**2 - point%crushed**2, 0.0_wp)
+   end function held_energy
 
    !> Vertices of a part where they are now
    pure subroutine place_part(set, p, x, n)
@@ -389,7 +404,8 @@ contains
 
    !> Hand the memory of contact points to the new edges: each new point takes the nearest old one.
    !> Forces keep their sense when the roles swap, since tangent and acting body both turn round. A new point that takes
-   !> none begins without force, however deep the overlap: with its force at once the springs would gain energy.
+   !> none begins without force, however deep the overlap, unless mortar binds the pair: with its force at once the springs would gain
+   !> energy. Points of rigid contacts carry no length and hold no energy.
    pure subroutine carry_over(set, old, new)
       type(body_set), intent(in) :: set
       type(contact_pair), intent(in) :: old
@@ -423,8 +439,8 @@ contains
       new%point%meets = now%meets
       do j = 1, 2
          if (taken(j)) cycle
-         if (memory(j)%closed) new%given_up = new%given_up + 0.5_wp * [memory(j)%spring_s**2 / memory(j)%length, &
-            memory(j)%length * (was%gap(j) - memory(j)%filled)**2]
+         if (memory(j)%closed .and. memory(j)%length > 0.0_wp) new%given_up = new%given_up &
+            + [0.5_wp * memory(j)%spring_s**2 / memory(j)%length, held_energy(memory(j), was%gap(j))]
          new%loss_before = new%loss_before + [memory(j)%friction_loss, memory(j)%damping_loss]
       end do
    end subroutine carry_over

@@ -26,7 +26,10 @@ contains
       real(wp) :: stiffness(2), trial(2), force(2), crushed(2)
       integer :: i
       pair%crushed = 0.0_wp
-      if (pair%joint == 0 .or. pair%careful .or. .not. now%width > 0.0_wp) return
+      if (pair%joint == 0 .or. pair%careful .or. .not. now%width > 0.0_wp) then
+         pair%point%crushed = 0.0_wp
+         return
+      end if
       do i = 1, 2
          stiffness(i) = law%normal_stiffness * merge(pair%point(i)%length, 0.5_wp * now%width, pair%point(i)%closed)
       end do

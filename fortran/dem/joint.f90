@@ -58,7 +58,7 @@ contains
       logical, intent(in) :: open                   !! at the point itself
       real(wp) :: share
       share = merge(0.0_wp, 1.0_wp, open)
-      if (by_spring * by_face > 0.0_wp) share = share * by_spring / (by_spring + by_face)
+      if (by_spring * by_face >= 0.0_wp .and. abs(by_face) > 0.0_wp) share = share * by_spring / (by_spring + by_face)
       if (by_spring * by_face < 0.0_wp .and. abs(by_face) > abs(by_spring)) share = 0.0_wp
    end function spring_share
 

@@ -5,11 +5,12 @@
 !> u' of body 2 relative to body 1 and the length l of joint that the point carries (half of a joint with two
 !> points: thesis Eq. 7.12, with k_n its k_j in Pa/m times the depth):
 !>
-!>    N  = -k_n l g                        total, so that no drift can gather (Cundall and Strack 1979)
+!>    N  = -k_n l (g - g_0)                total, so that no drift can gather (Cundall and Strack 1979)
 !>    S += -k_s l u_t' dt,   |S| <= mu N + c l
 !>    D  = -beta k l u'                    in both directions: C = beta K at the contacts, thesis Eq. 7.1
 !>
-!> on body 2, the opposite on body 1. mu is the coefficient of friction; cohesion c and tensile strength f_t of
+!> on body 2, the opposite on body 1. g_0 is 0, or the negative gap at which the spring has no force (`filled` in dem_contacts).
+!> mu is the coefficient of friction; cohesion c and tensile strength f_t of
 !> mortar (N >= -f_t l) are lost at the first failure in shear or tension. A dashpot acts while the point is closed,
 !> in shear while it sticks, and leaves N + D >= 0 (>= -f_t l). beta follows from the damping ratio at a frequency
 !> by thesis Eq. 7.17. The normal force does not depend on the sliding (no dilatancy, thesis 7.2).

@@ -140,6 +140,7 @@ contains
          if (pair%careful) call choose_edges(model%set, model%contacts%skin, pair, distance)
          associate (a => model%set%item(pair%bodies(1)), b => model%set%item(pair%bodies(2)))
             call measure_overlap(pair, a, b, now)
+            pair%point%meets = now%meets
             if (now%width <= 0.0_wp) return
             call place_body(model%ahead(:, pair%bodies(1)), a_next)
             call place_body(model%ahead(:, pair%bodies(2)), b_next)

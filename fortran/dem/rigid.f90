@@ -66,7 +66,7 @@ module dem_rigid
       integer :: steps = 0                     !! solved so far
       integer :: factors = 0                   !! factorisations they took
       integer :: most_rounds = 0               !! greatest number of rounds of one step
-      integer :: open_steps = 0                !! steps that did not converge
+      integer :: open_steps = 0                !! steps that did not converge; on springs, of faces that crush
       real(wp) :: residual = 0.0_wp            !! greatest violation, over the velocity that gravity gives in a step
       real(wp) :: worst = 0.0_wp               !! time of the step in which it was [s]
       real(wp) :: error = 0.0_wp               !! greatest violation in the last step [m/s]

@@ -194,7 +194,7 @@ contains
       call run%stop_bodies()
    end subroutine rest_by_waiting
 
-   !> Exactly `count` steps, with searches in between
+   !> Exactly `count` steps, each search before the step that needs it: forces and energies are those of the contacts of the last step
    subroutine take_exactly(run, count, status)
       class(simulation), intent(inout), target :: run
       integer, intent(in) :: count
@@ -207,19 +207,20 @@ contains
       model => run%get_model()
       target_steps = model%steps + count
       do while (model%steps < target_steps)
+         if (model%stale) then
+            model%stale = .false.
+            call run%find_pairs(.false., status)
+            if (status /= status_ok) return
+            run%record%searches = run%record%searches + 1
+            run%record%most_pairs = max(run%record%most_pairs, run%record%pairs)
+            ! New contacts may be stiffer than those of the start.
+            call run%find_stable_step(stable, suitable, status)
+            if (status /= status_ok) return
+            if (model%step > 0.9_wp * stable) model%step = 0.5_wp * stable
+            run%record%least_step = min(run%record%least_step, model%step)
+         end if
          call run%take_steps(target_steps - model%steps, status)
          if (status /= status_ok) return
-         if (.not. model%stale) cycle
-         model%stale = .false.
-         call run%find_pairs(.false., status)
-         if (status /= status_ok) return
-         run%record%searches = run%record%searches + 1
-         run%record%most_pairs = max(run%record%most_pairs, run%record%pairs)
-         ! New contacts may be stiffer than those of the start.
-         call run%find_stable_step(stable, suitable, status)
-         if (status /= status_ok) return
-         if (model%step > 0.9_wp * stable) model%step = 0.5_wp * stable
-         run%record%least_step = min(run%record%least_step, model%step)
       end do
    end subroutine take_exactly
 
@@ -254,8 +255,10 @@ contains
             record%round = max(record%round, energy%kinetic + abs(energy%potential - record%start%potential) &
                + energy%friction + energy%damping + energy%mass_damping)
             record%residual = max(record%residual, energy_from_nowhere(run, energy))
-            ! Time may have stood still meanwhile.
+            ! Time may have stood still meanwhile, or the step have been cut.
             if (due .and. model%quasi_static) due = model%t > record%wanted(record%points + 1)
+            if (due .and. .not. model%quasi_static) due = model%t - model%drift &
+               > record%wanted(record%points + 1) - 0.51_wp * model%step
             if (due) call record_point(run, energy)
             if (.not. record%residual <= options%residual_limit) then
                record%reason = stop_blow_up

@@ -18,7 +18,7 @@ module dem3_law
    use dem_joint, only : joint_law, spring_share
    use dem3_bodies, only : body, body_set
    use dem3_patch, only : feature, measure_feature, find_features, patch
-   use dem3_pressure, only : press_face
+   use dem3_pressure, only : face_room, face_room_new, press_face
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -57,7 +57,9 @@ module dem3_law
       real(wp) :: support_work = 0.0_wp        !! [J]
       real(wp) :: crushed = 0.0_wp             !! energy of a face that crushes, without its springs, see dem3_pressure [J]
       logical :: lacks_memory = .false.        !! there was no room for its points: the run must end
+      integer :: unsolved = 0                  !! steps in which the pressure of a face that crushes did not converge
       type(contact_point), allocatable :: point(:)
+      type(face_room), allocatable :: room     !! of a face that crushes; made where it is needed
    end type contact_pair
 
    !> Points nearer to one found anew than this share of the root of its area are the same
@@ -71,12 +73,15 @@ module dem3_law
    !> The same ratio, above which the springs belong to other features, for instance to faces in place of crossing edges. An area
    !> that grows with the overlap, as under a keystone that settles, stays below this ratio: the contact keeps its pressure.
    real(wp), parameter :: other_springs = 1.2_wp
+   !> The same ratio at which the springs of a face that crushes have been reduced enough, and how often at most
+   real(wp), parameter :: near_enough = 1.01_wp
+   integer, parameter :: most_parts = 20
 
 contains
 
    !> Where a pair touches, looked at anew if its bodies have moved relative to each other by more than `far`; what goes
    !> on keeps its springs. The little that the springs gain or lose as the shared area changes is not recorded: it shows as an
-   !> error of the energy balance.
+   !> error of the energy balance. Of a face that crushes, the energy is that at its present pressure.
    pure subroutine find_points(law, set, far, margin, pair)
       type(joint_law), intent(in) :: law
       type(body_set), intent(in) :: set
@@ -101,9 +106,9 @@ contains
       bound = .false.
       if (pair%points > 0) bound = any(pair%point(:pair%points)%bonded)
       held = 0.0_wp
-      if (pair%points > 0 .and. .not. bound) held = energy_here(law, set, pair)
+      if (pair%points > 0 .and. .not. bound) call measure_held(law, set, pair, held)
       call find_anew(set, margin, law%strength > 0.0_wp, pair)
-      if (law%strength > 0.0_wp .and. held > 0.0_wp) return   ! the energy of a face that crushes is not that of its corners
+      if (pair%points == 0) pair%crushed = 0.0_wp
       if (held > 0.0_wp) then
          call keep_energy(law, set, held, pair)
       else if (later .and. .not. bound) then
@@ -111,25 +116,41 @@ contains
       end if
    end subroutine find_points
 
-   !> Energy that the springs of a pair hold at the present places of its bodies [J]
-   pure function energy_here(law, set, pair) result(energy)
+   !> Energy that the springs of a pair, and a face that crushes, hold at the present places of its bodies
+   pure subroutine measure_held(law, set, pair, energy)
       type(joint_law), intent(in) :: law
       type(body_set), intent(in) :: set
-      type(contact_pair), intent(in) :: pair
-      real(wp) :: energy
+      type(contact_pair), intent(inout) :: pair
+      real(wp), intent(out) :: energy           !! [J]
       real(wp) :: normal(3), gap, at(3)
+      logical :: converged
       integer :: i
       energy = 0.0_wp
-      do i = 1, pair%points
-         associate (point => pair%point(i))
-            call measure_feature(point%what, set%item(set%parts(pair%part(1))%owner), &
-               set%item(set%parts(pair%part(2))%owner), normal, gap, at)
-            gap = min(gap - point%filled, 0.0_wp)
-            energy = energy + 0.5_wp * law%normal_stiffness * point%what%area * gap**2 &
-               + 0.5_wp * dot_product(point%spring_s, point%spring_s) / (law%shear_stiffness * point%what%area)
-         end associate
-      end do
-   end function energy_here
+      associate (a => set%item(set%parts(pair%part(1))%owner), b => set%item(set%parts(pair%part(2))%owner))
+         if (crushes(law, pair)) call press_corners(law, a, b, pair, energy, converged)
+         if (pair%lacks_memory) return
+         do i = 1, pair%points
+            associate (point => pair%point(i))
+               if (crushes(law, pair)) then
+                  gap = pair%room%force(i) / pair%room%spring(i)
+               else
+                  call measure_feature(point%what, a, b, normal, gap, at)
+                  gap = min(gap - point%filled, 0.0_wp)
+               end if
+               energy = energy + 0.5_wp * law%normal_stiffness * point%what%area * gap**2 &
+                  + 0.5_wp * dot_product(point%spring_s, point%spring_s) / (law%shear_stiffness * point%what%area)
+            end associate
+         end do
+      end associate
+   end subroutine measure_held
+
+   !> Whether a pair shares a face that crushes
+   pure function crushes(law, pair) result(does)
+      type(joint_law), intent(in) :: law
+      type(contact_pair), intent(in) :: pair
+      logical :: does
+      does = law%strength > 0.0_wp .and. pair%points > 2
+   end function crushes
 
    !> Limits the energy of the springs of a pair to the energy before the search. If new features with other areas hold more, their
    !> springs are reduced; if they hold less, the difference is recorded as a loss along the normal
@@ -139,18 +160,24 @@ contains
       real(wp), intent(in) :: held              !! before [J]
       type(contact_pair), intent(inout) :: pair
       real(wp) :: normal(3), gap, at(3), now, part
-      integer :: i
-      now = energy_here(law, set, pair)
+      integer :: i, k
+      call measure_held(law, set, pair, now)
       if (now < lost * held) pair%damping_loss = pair%damping_loss + held - now
       if (now <= other_springs * held) return
-      part = sqrt(held / now)
-      do i = 1, pair%points
-         associate (point => pair%point(i))
-            call measure_feature(point%what, set%item(set%parts(pair%part(1))%owner), &
-               set%item(set%parts(pair%part(2))%owner), normal, gap, at)
-            point%filled = point%filled + (1.0_wp - part) * min(gap - point%filled, 0.0_wp)
-            point%spring_s = part * point%spring_s
-         end associate
+      ! Once for springs; the energy of a face that crushes grows with less than their square and is approached from above
+      do k = 1, merge(most_parts, 1, crushes(law, pair))
+         part = sqrt(held / now)
+         do i = 1, pair%points
+            associate (point => pair%point(i))
+               call measure_feature(point%what, set%item(set%parts(pair%part(1))%owner), &
+                  set%item(set%parts(pair%part(2))%owner), normal, gap, at)
+               point%filled = point%filled + (1.0_wp - part) * min(gap - point%filled, 0.0_wp)
+               point%spring_s = part * point%spring_s
+            end associate
+         end do
+         if (.not. crushes(law, pair)) exit
+         call measure_held(law, set, pair, now)
+         if (now <= near_enough * held) exit
       end do
    end subroutine keep_energy
 
@@ -283,24 +310,24 @@ contains
       type(body), intent(inout) :: a
       type(body), intent(inout) :: b
       type(contact_pair), intent(inout) :: pair
-      real(wp) :: normal(3), gap, at(3), arm_a(3), arm_b(3), u(3), force(3), dash(3), crushed(pair%points)
+      real(wp) :: normal(3), gap, at(3), arm_a(3), arm_b(3), u(3), force(3), dash(3)
       type(joint_law) :: own
-      real(wp) :: elastic(pair%points)
-      logical :: crushes
+      logical :: has_face
       integer :: i
 
       own = law
-      crushes = law%strength > 0.0_wp .and. pair%points > 2
+      has_face = crushes(law, pair)
       pair%crushed = 0.0_wp
-      if (crushes) call crush_face(law, a, b, pair, crushed, elastic)
+      if (has_face) call crush_face(law, a, b, pair)
+      if (pair%lacks_memory) return
       do i = 1, pair%points
          associate (point => pair%point(i))
             call measure_feature(point%what, a, b, normal, gap, at)
             if (gap >= 0.0_wp) point%filled = max(point%filled, 0.0_wp)
             gap = gap - point%filled
-            if (crushes) then
-               gap = crushed(i)
-               own%damping = elastic(i) * law%damping
+            if (has_face) then
+               gap = pair%room%gap(i)
+               own%damping = pair%room%elastic(i) * law%damping
             end if
             if (gap >= 0.0_wp) then
                ! Mortar that is torn farther than its strength is gone for good.
@@ -342,33 +369,68 @@ contains
       end do
    end subroutine apply_pair_law
 
-   !> Gaps at which the springs of the corners have the forces of a face that crushes, in place of those measured
-   pure subroutine crush_face(law, a, b, pair, gap, elastic)
+   !> Gaps at which the springs of the corners have the forces of a face that crushes, in place of those measured: in the room of the pair
+   pure subroutine crush_face(law, a, b, pair)
       type(joint_law), intent(in) :: law
       type(body), intent(in) :: a
       type(body), intent(in) :: b
       type(contact_pair), intent(inout) :: pair
-      real(wp), intent(out) :: gap(:)           !! (points) [m]
-      real(wp), intent(out) :: elastic(:)       !! (points) see spring_share
-      real(wp), dimension(pair%points) :: spring, trial, overlap, force
-      real(wp) :: corner(3, pair%points), normal(3), at(3)
+      logical :: converged
       integer :: i
-      do i = 1, pair%points
-         call measure_feature(pair%point(i)%what, a, b, normal, gap(i), at)
-         gap(i) = gap(i) - merge(max(pair%point(i)%filled, 0.0_wp), pair%point(i)%filled, gap(i) >= 0.0_wp)
-         corner(:, i) = pair%point(i)%what%at
-         spring(i) = law%normal_stiffness * pair%point(i)%what%area
-         trial(i) = -spring(i) * gap(i)
-         overlap(i) = pair%point(i)%overlap
-      end do
-      call press_face(corner, spring, trial, law%normal_stiffness, law%strength, overlap, force, pair%crushed)
-      do i = 1, pair%points
-         elastic(i) = spring_share((force(i) - pair%point(i)%spring_n) / spring(i), &
-            max(overlap(i), 0.0_wp) - max(pair%point(i)%overlap, 0.0_wp), gap(i) >= 0.0_wp)
-         pair%point(i)%overlap = overlap(i)
-         gap(i) = merge(-force(i) / spring(i), max(gap(i), 0.0_wp), force(i) > 0.0_wp)
-      end do
+      call press_corners(law, a, b, pair, pair%crushed, converged)
+      if (pair%lacks_memory) return
+      if (.not. converged) pair%unsolved = pair%unsolved + 1
+      associate (gap => pair%room%gap, force => pair%room%force, spring => pair%room%spring, overlap => pair%room%overlap)
+         do i = 1, pair%points
+            pair%room%elastic(i) = spring_share((force(i) - pair%point(i)%spring_n) / spring(i), &
+               max(overlap(i), 0.0_wp) - max(pair%point(i)%overlap, 0.0_wp), gap(i) >= 0.0_wp)
+            pair%point(i)%overlap = overlap(i)
+            gap(i) = merge(-force(i) / spring(i), max(gap(i), 0.0_wp), force(i) > 0.0_wp)
+         end do
+      end associate
    end subroutine crush_face
+
+   !> Forces of the corners of a face that crushes at the present places, and the gaps measured, into the room of the pair
+   pure subroutine press_corners(law, a, b, pair, energy, converged)
+      type(joint_law), intent(in) :: law
+      type(body), intent(in) :: a
+      type(body), intent(in) :: b
+      type(contact_pair), intent(inout) :: pair
+      real(wp), intent(out) :: energy           !! of the face, without that of the springs [J]
+      logical, intent(out) :: converged
+      real(wp) :: normal(3), at(3)
+      integer :: i
+      energy = 0.0_wp
+      converged = .true.
+      call make_room(pair)
+      if (pair%lacks_memory) return
+      associate (gap => pair%room%gap)
+         do i = 1, pair%points
+            call measure_feature(pair%point(i)%what, a, b, normal, gap(i), at)
+            gap(i) = gap(i) - merge(max(pair%point(i)%filled, 0.0_wp), pair%point(i)%filled, gap(i) >= 0.0_wp)
+            pair%room%corner(:, i) = pair%point(i)%what%at
+            pair%room%spring(i) = law%normal_stiffness * pair%point(i)%what%area
+            pair%room%trial(i) = -pair%room%spring(i) * gap(i)
+            pair%room%overlap(i) = pair%point(i)%overlap
+         end do
+      end associate
+      call press_face(law%normal_stiffness, law%strength, pair%room, energy, converged)
+   end subroutine press_corners
+
+   !> Room for a face of as many corners as a pair has points
+   pure subroutine make_room(pair)
+      type(contact_pair), intent(inout) :: pair
+      integer(c_int) :: status
+      integer :: failed
+      if (allocated(pair%room)) then
+         if (size(pair%room%gap) == pair%points) return
+         deallocate (pair%room)
+      end if
+      allocate (pair%room, stat=failed)
+      status = status_ok
+      if (failed == 0) call face_room_new(pair%points, pair%room, status)
+      pair%lacks_memory = pair%lacks_memory .or. failed /= 0 .or. status /= status_ok
+   end subroutine make_room
 
    !> Force of a closed point: springs, the normal dashpot, then friction on the shear spring and its dashpot
    pure subroutine press_point(law, kick, drift, normal, gap, u, arm_a, arm_b, a, b, point, friction_loss, force, dash)

@@ -114,6 +114,7 @@ contains
             if (all(model%pair(old)%part == found(k)%part)) then
                ! its points are handed over: copies of them may lack memory
                call move_alloc(model%pair(old)%point, points)
+               if (allocated(model%pair(old)%room)) deallocate (model%pair(old)%room)
                found(k) = model%pair(old)
                call move_alloc(points, found(k)%point)
                old = old + 1

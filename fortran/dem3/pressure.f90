@@ -15,53 +15,83 @@
 !> crushing takes is given back when the contact closes again: the law has no memory.
 module dem3_pressure
    use common_kinds, only : wp
+   use common_status, only : status_ok, status_out_of_memory
+   use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: press_face
+   public :: face_room, face_room_new, press_face
+
+   !> A face of n corners: its forces, and the room in which they are found
+   type :: face_room
+      real(wp), allocatable :: corner(:, :)      !! (3, n) in order around the polygon [m]
+      real(wp), allocatable :: spring(:)         !! (n) k_i [N/m]
+      real(wp), allocatable :: trial(:)          !! (n) t_i, negative where a corner is open [N]
+      real(wp), allocatable :: overlap(:)        !! (n) g at the corners, from where the search starts [m]
+      real(wp), allocatable :: force(:)          !! (n) [N]
+      real(wp), allocatable :: gap(:)            !! (n) at which the springs alone have these forces [m]
+      real(wp), allocatable :: elastic(:)        !! (n) see spring_share
+      real(wp), allocatable :: slope(:), way(:), next(:)   !! (n)
+      real(wp), allocatable :: bend(:, :)        !! (n, n)
+   end type face_room
 
    real(wp), parameter :: stiffer = 1.0e4_wp     !! K over the stiffness of the springs per area
 
 contains
 
+   !> Room for a face of so many corners
+   pure subroutine face_room_new(corners, room, status)
+      integer, intent(in) :: corners
+      type(face_room), intent(out) :: room
+      integer(c_int), intent(out) :: status      !! status_out_of_memory, else ok
+      integer :: failed
+      allocate (room%corner(3, corners), room%spring(corners), room%trial(corners), room%overlap(corners), room%force(corners), &
+         room%gap(corners), room%elastic(corners), room%slope(corners), room%way(corners), room%next(corners), &
+         room%bend(corners, corners), stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+   end subroutine face_room_new
+
    !> Forces of the corners of a polygon
-   pure subroutine press_face(corner, spring, trial, stiffness, strength, overlap, force, energy)
-      real(wp), intent(in) :: corner(:, :)       !! (3, n) in order around the polygon [m]
-      real(wp), intent(in) :: spring(:)          !! (n) k_i [N/m]
-      real(wp), intent(in) :: trial(:)           !! (n) t_i, negative where a corner is open [N]
+   pure subroutine press_face(stiffness, strength, room, energy, converged)
       real(wp), intent(in) :: stiffness          !! of the springs per area [Pa/m]
       real(wp), intent(in) :: strength           !! [Pa]
-      real(wp), intent(inout) :: overlap(:)      !! (n) g at the corners, from where the search starts [m]
-      real(wp), intent(out) :: force(:)          !! (n) [N]
+      type(face_room), intent(inout) :: room     !! corners, springs, their forces alone and overlaps; has the forces then
       real(wp), intent(out) :: energy            !! of the face, without that of the springs [J]
-      real(wp), parameter :: fine = 1.0e-9_wp    !! of the greatest force
-      real(wp), parameter :: rounding = 1.0e-13_wp
+      logical, intent(out) :: converged
+      real(wp), parameter :: fine = 1.0e-9_wp    !! of the greatest force that presses
+      real(wp), parameter :: coarse = 1.0e-6_wp  !! of the same: rounding may keep the search from the fine one, not from this
+      real(wp), parameter :: rounding = 1.0e-13_wp   !! of the greatest force
       integer, parameter :: most_rounds = 60, most_cuts = 40
-      real(wp) :: slope(size(trial)), way(size(trial)), next(size(trial)), bend(size(trial), size(trial))
-      real(wp) :: value, next_value, share, descent
+      real(wp) :: value, next_value, share, descent, tolerance
       integer :: k, cut
       energy = 0.0_wp
-      force = 0.0_wp
-      if (.not. maxval(trial) > 0.0_wp) then
-         overlap = trial / spring
-         return
-      end if
-      call evaluate(overlap, value, energy, slope, bend)
-      do k = 1, most_rounds
-         if (maxval(abs(slope)) <= fine * maxval(abs(trial))) exit
-         next = -slope
-         call solve(bend, next, way)
-         descent = dot_product(slope, way)
-         share = 1.0_wp
-         do cut = 1, most_cuts
-            next = overlap + share * way
-            call evaluate(next, next_value, energy, slope, bend)
-            if (next_value <= value + 1.0e-4_wp * share * descent + rounding * abs(value)) exit
-            share = 0.5_wp * share
+      converged = .true.
+      associate (spring => room%spring, trial => room%trial, overlap => room%overlap, force => room%force, &
+                 slope => room%slope, way => room%way, next => room%next, bend => room%bend)
+         force = 0.0_wp
+         if (.not. maxval(trial) > 0.0_wp) then
+            overlap = trial / spring
+            return
+         end if
+         tolerance = max(fine * maxval(trial), rounding * maxval(abs(trial)))
+         call evaluate(overlap, value, energy, slope, bend)
+         do k = 1, most_rounds
+            if (maxval(abs(slope)) <= tolerance) exit
+            next = -slope
+            call solve(bend, next, way)
+            descent = dot_product(slope, way)
+            share = 1.0_wp
+            do cut = 1, most_cuts
+               next = overlap + share * way
+               call evaluate(next, next_value, energy, slope, bend)
+               if (next_value <= value + 1.0e-4_wp * share * descent + rounding * abs(value)) exit
+               share = 0.5_wp * share
+            end do
+            overlap = next
+            value = next_value
          end do
-         overlap = next
-         value = next_value
-      end do
-      force = max(trial - spring * overlap, 0.0_wp)
+         converged = maxval(abs(slope)) <= max(tolerance, coarse * maxval(trial))
+         force = max(trial - spring * overlap, 0.0_wp)
+      end associate
 
    contains
 
@@ -76,17 +106,17 @@ contains
          real(wp) :: all_of(3, 3), crushed(3, 3), part(3, 3)
          integer :: i, j, n
          n = size(g)
-         middle = sum(corner, dim=2) / n
+         middle = sum(room%corner, dim=2) / n
          face = 0.0_wp
-         gradient = spring * g - trial
+         gradient = room%spring * g - room%trial
          second = 0.0_wp
          do i = 1, n
-            second(i, i) = spring(i)
+            second(i, i) = room%spring(i)
          end do
          do i = 1, n
             j = merge(1, i + 1, i == n)
-            one = corner(:, i) - middle
-            other = corner(:, j) - middle
+            one = room%corner(:, i) - middle
+            other = room%corner(:, j) - middle
             normal = [one(2) * other(3) - one(3) * other(2), one(3) * other(1) - one(1) * other(3), &
                one(1) * other(2) - one(2) * other(1)]
             area = 0.5_wp * sqrt(sum(normal**2))
@@ -113,7 +143,7 @@ contains
             second(i, j) = second(i, j) + part(2, 3)
             second(j, i) = second(j, i) + part(2, 3)
          end do
-         whole = face + sum((0.5_wp * spring * g - trial) * g)
+         whole = face + sum((0.5_wp * room%spring * g - room%trial) * g)
       end subroutine evaluate
 
    end subroutine press_face

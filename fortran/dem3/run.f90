@@ -90,7 +90,11 @@ contains
       integer, intent(in) :: threads
       integer(c_int), intent(out) :: status
       call advance_model(run%model, count, threads)
-      status = merge(status_out_of_memory, status_ok, any(run%model%pair(:run%model%pairs)%lacks_memory))
+      associate (pair => run%model%pair(:run%model%pairs), solver => run%model%rigid)
+         status = merge(status_out_of_memory, status_ok, any(pair%lacks_memory))
+         solver%open_steps = solver%open_steps + sum(pair%unsolved)
+         pair%unsolved = 0
+      end associate
    end subroutine advance_springs
 
    subroutine number_unknowns(run, status)
@@ -394,6 +398,7 @@ contains
                call on%pass(pair%friction_loss, storage_size(pair%friction_loss))
                call on%pass(pair%damping_loss, storage_size(pair%damping_loss))
                call on%pass(pair%support_work, storage_size(pair%support_work))
+               call on%pass(pair%crushed, storage_size(pair%crushed))
                if (on%mode == loading) then
                   status = status_invalid_argument
                   if (on%short .or. pair%points < 0 .or. pair%points > size(on%bytes)) return

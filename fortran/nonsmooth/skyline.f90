@@ -186,17 +186,21 @@ contains
       end do
    end subroutine skyline_add
 
-   !> Cholesky factors in place of the matrix; singular where it is not positive definite. The rows of a body meet all rows above together
+   !> Cholesky factors in place of the matrix; singular where it is not positive definite, invalid_argument where bodies have other than
+   !> 3 or 6 freedoms. The rows of a body meet all rows above together
    pure subroutine skyline_factor(matrix, status)
       type(skyline), intent(inout) :: matrix
       integer(c_int), intent(out) :: status
       integer :: i, j, from, other, body
       real(wp) :: pivot
 
-      status = status_singular
       do i = 1, matrix%n
          body = i - mod(i - 1, matrix%freedoms)
-         if (i == body) call extrados_envelope_rows(matrix%freedoms, i, matrix%first, matrix%start, matrix%a)
+         if (i == body) then
+            call extrados_envelope_rows(matrix%freedoms, i, matrix%first, matrix%start, matrix%a, status)
+            if (status /= status_ok) return
+            status = status_singular
+         end if
          associate (a => matrix%a, row => matrix%start(i), first => matrix%first(i))
             do j = body, i - 1
                from = max(first, matrix%first(j))

@@ -3,9 +3,12 @@ program test_dem
    use common_kinds, only : wp
    use common_status, only : status_ok, status_bad_geometry, status_invalid_argument
    use dem_bodies, only : body, body_set, body_set_new, body_turn
-   use dem_contacts, only : contact_pair, contact_set, overlap, measure_overlap
+   use dem_contacts, only : choose_edges, contact_pair, contact_set, measure_overlap, measure_springs, overlap
    use dem_joint, only : joint_law
    use dem_law, only : apply_pair_law, elastic_energy
+   use dem_model, only : block_model
+   use dem_moreau, only : number_unknowns, solve_contacts
+   use dem_rigid, only : rigid_setting, set_rigid
    use dem_search, only : search_pairs
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none (type, external)
@@ -20,15 +23,19 @@ program test_dem
    call friction()
    call dashpots()
    call mortar()
+   call other_edges()
+   call other_edges_on_rigid_contacts()
    print '(a)', 'dem: all right'
 
 contains
 
    !> The box on a floor (body 1: the box, body 2: the floor below it)
-   subroutine box_on_floor(set)
+   subroutine box_on_floor(set, left)
       type(body_set), intent(out) :: set
+      real(wp), intent(in), optional :: left     !! end of the floor [m], 2.5 m from the other one
       real(wp) :: floor(2, 4)
       floor(1, :) = 10.0_wp * box(1, :) - 9.0_wp
+      if (present(left)) floor(1, :) = left + 1.25_wp * box(1, :)
       floor(2, :) = box(2, :) - 1.0_wp
       call body_set_new(reshape([1.0_wp, 0.5_wp, 1.0_wp, -0.5_wp], [2, 2]), [mass, 0.0_wp], [inertia, 0.0_wp], &
          [1_c_int, 2_c_int], [1_c_int, 5_c_int, 9_c_int], reshape([box, floor], [2, 8]), &
@@ -63,11 +70,7 @@ contains
       type(contact_set) :: contacts
       type(overlap) :: now
       call box_on_floor(set)
-      allocate (contacts%law_first(3), contacts%law_body(0), contacts%law_number(0))
-      contacts%law_first = 1
-      contacts%skin = 0.02_wp * set%size
-      call search_pairs(set, contacts, .true., status)
-      if (status /= status_ok .or. contacts%pairs /= 1) error stop 'a box and a floor make one pair'
+      call near_floor(set, contacts)
       associate (pair => contacts%pair(1), a => set%item(contacts%pair(1)%bodies(1)), &
                  b => set%item(contacts%pair(1)%bodies(2)))
          if (pair%law /= 1) error stop 'the law of a joint without an entry'
@@ -87,6 +90,90 @@ contains
          if (abs(maxval(now%gap) - 2.0_wp * sin(turn)) > 1e-6_wp * turn) error stop 'the corner that lifts'
       end associate
    end subroutine touching
+
+   !> The box and the floor as a pair
+   subroutine near_floor(set, contacts)
+      type(body_set), intent(inout) :: set
+      type(contact_set), intent(out) :: contacts
+      allocate (contacts%law_first(3), contacts%law_body(0), contacts%law_number(0))
+      contacts%law_first = 1
+      contacts%skin = 0.02_wp * set%size
+      call search_pairs(set, contacts, .true., status)
+      if (status /= status_ok .or. contacts%pairs /= 1) error stop 'a box and a floor make one pair'
+      contacts%pair(1)%point%bonded = .false.
+   end subroutine near_floor
+
+   !> The box turned about a point below it
+   subroutine turn_box(set, about, angle)
+      type(body_set), intent(inout) :: set
+      real(wp), intent(in) :: about              !! x of a point of its base [m]
+      real(wp), intent(in) :: angle
+      set%item(1)%angle = angle
+      call body_turn(set%item(1))
+      set%item(1)%x = about + (1.0_wp - about) * cos(angle) - 0.5_wp * sin(angle)
+      set%item(1)%y = (1.0_wp - about) * sin(angle) + 0.5_wp * cos(angle)
+   end subroutine turn_box
+
+   !> Energy that springs give up as other edges meet: what they hold, less what has crushed at a constant force
+   subroutine other_edges()
+      real(wp), parameter :: crushed = 0.4e-3_wp
+      type(body_set) :: set
+      type(contact_set) :: contacts
+      type(overlap) :: was, now
+      real(wp) :: distance
+      ! The end of the floor meets the base, where the corner beyond it did
+      call box_on_floor(set, 0.5_wp)
+      call near_floor(set, contacts)
+      associate (pair => contacts%pair(1))
+         call turn_box(set, 2.0_wp, 1.0e-3_wp)
+         pair%point%meets = 0
+         pair%point%closed = .true.
+         pair%point%length = 1.0_wp
+         pair%point%crushed = crushed
+         call measure_overlap(pair, set%item(pair%bodies(1)), set%item(pair%bodies(2)), was, [0, 0])
+         call measure_springs(pair, set%item(pair%bodies(1)), set%item(pair%bodies(2)), now)
+         call near(pair%given_up(2), 0.5_wp * (minval(was%gap)**2 - crushed**2 - minval(now%gap)**2), &
+            'energy that a corner beyond the floor gives up')
+      end associate
+      ! The box comes to rest on its side: the corner that is up is free, with length or without
+      call box_on_floor(set)
+      call near_floor(set, contacts)
+      associate (pair => contacts%pair(1))
+         pair%point%meets = 0
+         pair%point%closed = .true.
+         pair%point%length = [1.0_wp, 0.0_wp]
+         pair%point%spring_s = [0.0_wp, 1.0_wp]
+         if (pair%bodies(2) /= 1) error stop 'the floor has the longer edge'
+         call turn_box(set, 2.0_wp, -1.57_wp)
+         call choose_edges(set, contacts%skin, pair, distance)
+         if (maxval(pair%given_up) > 1.0e-12_wp) error stop 'springs that are free hold energy'
+      end associate
+   end subroutine other_edges
+
+   !> A point on rigid contacts that meets the end of the floor keeps its force as the edges change
+   subroutine other_edges_on_rigid_contacts()
+      type(block_model) :: model
+      real(wp) :: distance, force
+      call box_on_floor(model%set, 0.5_wp)
+      call near_floor(model%set, model%contacts)
+      allocate (model%law(1), model%ties%item(0), model%ties%anchor(0), model%load%move(0))
+      model%law = dry
+      model%gravity = [0.0_wp, -10.0_wp]
+      model%step = 1.0e-3_wp
+      call set_rigid(model%rigid, model%model_clock, rigid_setting(used=.true.), 10.0_wp, 1.0_wp, mass)
+      call number_unknowns(model, status)
+      associate (pair => model%contacts%pair(1))
+         pair%point%meets = 0                    ! as a change of edges left them
+         call solve_contacts(model, status)
+         if (status /= status_ok) error stop 'a box on the end of a floor'
+         force = pair%point(2)%spring_n
+         if (.not. force > 0.0_wp) error stop 'the end of the floor carries nothing'
+         call turn_box(model%set, 0.5_wp, 0.3_wp)
+         call choose_edges(model%set, model%contacts%skin, pair, distance)
+         if (pair%bodies(2) /= 2) error stop 'the base of the box is no reference'
+         if (minval(abs(pair%point%spring_n - force)) > 0.0_wp) error stop 'the force at the end of the floor is lost'
+      end associate
+   end subroutine other_edges_on_rigid_contacts
 
    !> A floor (a) and the box above it (b), two points at the ends of the joint
    subroutine scene(gap, a, b, pair, now)

@@ -36,6 +36,14 @@ def test_a_block_stands_up_to_its_strength(share: float, stands: bool) -> None:
         assert run.reason == "unsettled" and run.blamed == [0]
 
 
+def test_a_block_beyond_its_strength_falls_by_the_rest_of_its_weight() -> None:
+    """A face that crushes at a constant force has no dashpot: the acceleration is g (1 - .99), with damping too."""
+    times = np.linspace(0.1, 0.3, 3)
+    run = dem.run(block(0.99 * WEIGHT), dem.Options(0.35, settle_steps=0), times=times)
+    fall = np.diff(run.place[:, 0, 1]) / np.diff(run.time)
+    assert (fall[0] - fall[1]) / np.diff(run.time).mean() == pytest.approx(0.01 * G, rel=1e-3)
+
+
 def test_a_great_strength_changes_nothing_and_the_ledger_closes() -> None:
     """A rocking block, and one that rocks without dashpots between corners that crush: the energy balance includes the energy stored in them."""
     pulse = pieces([0.0, 0.3, 0.6], [0.4 * G, -0.4 * G])

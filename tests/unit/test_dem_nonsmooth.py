@@ -209,6 +209,9 @@ def test_a_run_that_does_not_converge_is_reported() -> None:
     assert unconverged(dem_run.Effort(100, 300, 20, 0, 1e-6, 0.7)) == []
     (told,) = unconverged(dem_run.Effort(100, 300, 200, 3, 0.02, 0.7))
     assert "did not converge in 3 of 100 steps. The greatest error, at 0.7 s" in told and "0.02" in told
+    assert unconverged(dem_run.NO_EFFORT) == []
+    (told,) = unconverged(dem_run.Effort(0, 0, 0, 2, 0.0, 0.0))  # on springs
+    assert "pressure of crushing faces did not converge 2 times" in told
 
 
 @pytest.mark.parametrize(("limit", "warned"), [(1.01, True), (0.5, False)])

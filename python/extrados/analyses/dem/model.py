@@ -133,7 +133,7 @@ def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end
             "contacts: blocks that touch on several sides jam under high friction. Use "
             'solver = "compliant", or a smaller coefficient of friction'
         )
-        if run.effort.open_steps
+        if run.effort.steps and run.effort.open_steps
         else ""
     )
     raise {"unsettled": Falls, "restless": Restless}.get(run.reason, Refused)(
@@ -235,9 +235,11 @@ def _doubts_of_tension(values: ContactValues, joint: str) -> list[str]:
 
 
 def unconverged(effort: dem_run.Effort) -> list[str]:
-    """The warning that rigid contacts did not converge in some steps."""
+    """The warning that rigid contacts, or on springs the pressure of faces that crush, did not converge in some steps."""
     if not effort.open_steps:
         return []
+    if not effort.steps:
+        return [f"the pressure of crushing faces did not converge {effort.open_steps} times. Try a smaller `time_step`"]
     return [
         (
             f"the contacts did not converge in {effort.open_steps} of {effort.steps} steps. The greatest error, at {effort.worst:.4g} "
