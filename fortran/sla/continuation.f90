@@ -13,7 +13,7 @@ module sla_continuation
       stop_none => sla_stop_none
    use common_status, only : status_cancelled, status_ok, status_out_of_memory
    use sla_bar, only : bar_group
-   use sla_coaxial, only : by_secant
+   use sla_coaxial, only : by_frozen, by_secant
    use sla_group, only : history_group, point_group, unbounded
    use sla_iterations, only : evaluate, explicit_step, few, find_places, growth, has_friction, implicit_step, is_driven, &
       loads_run_away, longest_step
@@ -193,11 +193,11 @@ contains
       type(event_log), intent(inout) :: log
       integer(c_int), intent(out) :: reason
       integer(c_int), intent(out) :: status
-      real(wp) :: lost, load, length
+      real(wp) :: lost, load, length, scale
       integer(c_int) :: code
       real(wp) :: part
       integer :: iterations, trials, retreats, g
-      logical :: carried, fallen
+      logical :: carried, fallen, last
       reason = stop_none
       status = status_ok
       associate (path => model%path, loop => model%loop)
@@ -205,19 +205,23 @@ contains
             if (cancel_requested()) status = status_cancelled
             if (status /= status_ok) exit
             length = path%step
-            if (path%steps == 0) length = 0.0_wp
+            if (path%steps == 0) then
+               length = 0.0_wp
+               call evaluate(model, by_frozen, .false., path%stored, scale)
+            end if
             retreats = 0
             do trials = 1, most_trials
                lost = 0.0_wp
+               last = retreats == most_retreats .or. .not. abs(length) > 0.0_wp .or. trials == most_trials
                if (path%implicit .or. path%steps < 2) then
-                  call implicit_step(model, length, code, iterations, carried, lost, status)
+                  call implicit_step(model, length, last, code, iterations, carried, lost, status)
                else
                   call explicit_step(model, length, code, carried, lost, status)
                   iterations = few
                end if
                if (status /= status_ok) exit
                if (.not. carried) then
-                  if (retreats == most_retreats .or. .not. abs(length) > 0.0_wp .or. trials == most_trials) exit
+                  if (last) exit
                   retreats = retreats + 1
                   call restore_state(model)
                   length = retreat * length

@@ -104,10 +104,12 @@ contains
       end do
    end function has_friction
 
-   !> Newton's method, then the staggered one
-   subroutine implicit_step(model, length, code, iterations, carried, lost, status)
+   !> Newton's method, then the staggered one. Ways of descent that run away may have gone too far with the damage: of the `last`
+   !> step to be tried the staggered one decides
+   subroutine implicit_step(model, length, last, code, iterations, carried, lost, status)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: length           !! of the control [J]
+      logical, intent(in) :: last              !! no shorter step follows
       integer(c_int), intent(out) :: code      !! of the list sla_event
       integer, intent(out) :: iterations
       logical, intent(out) :: carried
@@ -137,8 +139,12 @@ contains
             call staggered_step(model, length, iterations, found, carried, lost, status)
          else if (status == status_ok) then
             call descent_step(model, length, iterations, found, carried, lost, status)
-            if (found) found = takes_no_energy(model, length, lost)
-            if (status == status_ok .and. carried .and. .not. found) then
+            if (found) then
+               ! Newton's method may have ended it with damage that no loop has seen
+               call update_all(model, lost)
+               found = takes_no_energy(model, length, lost)
+            end if
+            if (status == status_ok .and. (carried .or. last) .and. .not. found) then
                ! Damage that went ahead of the forces costs more than their work: the slow way, from the last state
                call restore_histories(model)
                lost = 0.0_wp
@@ -659,10 +665,15 @@ contains
             before(:) = force(1:n)
             call pairs%reduce(force(1:n))
             call correct(model, path%drive + length, status)
+            if (status == status_not_positive_definite) then
+               status = status_ok
+               return
+            end if
             if (status /= status_ok) return
             call pairs%complete(z(:, 1), z(1, 2))
             work = dot_product(before, z(:, 1))
-            if (pairs%count > 0 .and. .not. work < 0.0_wp) then
+            if (.not. work < 0.0_wp) then
+               if (pairs%count == 0) return
                pairs%count = 0
                force(1:n) = before
                cycle

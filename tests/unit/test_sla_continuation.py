@@ -93,6 +93,15 @@ def test_crushing_wall_is_followed_to_the_loss_of_axial_capacity(height, loads, 
     check_steps(result)
 
 
+def test_ways_of_descent_that_run_away_end_no_wall() -> None:
+    """Staggered steps alone, without ways of descent, follow this wall to 25.04 mm at -10.6 kN; at 24.66 mm it carries 14 kN."""
+    r = run_deck(pier(0.05, 1.0, 0.2, crushing=True, height=3.0, target_displacement=3e-2, events=3000)).results
+    assert r["stop"] == "axial capacity lost" and r["unbalanced_steps"] == 0
+    assert r["axial_loss_displacement_m"] == pytest.approx(25.04e-3, rel=5e-3)
+    assert r["last_load_N"] < 0.0
+    assert r["step_residual_ratio"] <= RESIDUAL and r["step_balance_ratio"] <= BALANCE
+
+
 def test_implicit_explicit_integration_agrees() -> None:
     options = {"probes": [6e-3, 10e-3], "target_displacement": 10e-3}
     loads = [
