@@ -53,8 +53,12 @@ def blocks(
     anchored,
     point,
     spot,
+    pair,
+    ends,
+    normal,
+    load,
 ) -> Any:
-    """A block on a support that moves, shaken, with a tie."""
+    """A block on a support that moves, shaken, with a tie and a constant load; forces of its contact with their places."""
     bodies = dem.Bodies(
         centroid,
         mass,
@@ -66,6 +70,8 @@ def blocks(
         [LAW],
         {joint: law},
         dem_run.Ties(stretched, np.zeros_like(stretched), -bounds, bounds, first, closed, anchored, point, spot),
+        drawn=dem_run.DrawnContacts(pair, [ends], normal),
+        load=load,
     )
     options = dem.Options(
         end_time,
@@ -129,6 +135,9 @@ def solids(
     anchored,
     point,
     spot,
+    pair,
+    ends,
+    normal,
 ) -> Any:
     """A cube on a support in space, shaken, with a tie; on springs with a dowel."""
     dowels = None if rigid else dem3.Dowels(doweled, place, axis, stiffness, strength, reach, 1e-3)
@@ -144,6 +153,7 @@ def solids(
         {joint: law},
         dowels,
         tied,
+        drawn=dem_run.DrawnContacts(pair, [ends], normal),
     )
     options = dem3.Options(
         end_time,
@@ -210,6 +220,10 @@ def calls() -> Calls:
                     anchored=np.array([0, -1]),
                     point=np.array([0, 1]),
                     spot=np.array([[0.5, 0.9], [-3.0, 0.9]]),
+                    pair=np.array([[0, 1]]),
+                    ends=np.array([[0.0, 0.0], [1.0, 0.0]]),
+                    normal=np.array([[0.0, 1.0]]),
+                    load=np.array([[100.0, 0.0, 10.0, 50.0], [0.0, 0.0, 0.0, 0.0]]),
                 ),
             )
             for rigid in (False, True)
@@ -256,6 +270,9 @@ def calls() -> Calls:
                     anchored=np.array([0, -1]),
                     point=np.array([0, 1]),
                     spot=np.array([[0.5, 0.5, 0.9], [-3.0, 0.5, 0.9]]),
+                    pair=np.array([[0, 1]]),
+                    ends=CUBE[:4],
+                    normal=np.array([[0.0, 0.0, 1.0]]),
                 ),
             )
             for rigid in (False, True)

@@ -32,8 +32,16 @@ def small(
     cost,
     low,
     high,
+    arms,
+    row,
+    width,
+    springs,
+    sides,
 ) -> Any:
     """The functions that keep nothing."""
+    stiffness = limit.SpringBand(np.array(arms), np.array(row), 4, width)
+    stiffness.lay(np.array(springs))
+    solved = stiffness.solve(np.array(sides)) if stiffness.factor() else None
     return (
         arch.restitution(mass, centroid, inertia, joint, hinge, opposite),
         mechanism.restitution(mass, inertia, before, after),
@@ -43,6 +51,7 @@ def small(
         sla.largest_band(sla.Softening(1e5, 50.0), alpha),
         limit.BandFactor(np.array(band)).solve(right),
         limit.least_vertex(rows, least, cost, low, high),
+        solved,
     )
 
 
@@ -74,6 +83,11 @@ def calls(rng: np.random.Generator) -> Calls:
                 cost=np.array([1.0, 1.0]),
                 low=np.zeros(2),
                 high=np.full(2, 9.0),
+                arms=rng.normal(size=(3, 2, 3)),
+                row=np.array([[0, 1, 2], [1, 2, 3], [0, 2, -1]]),
+                width=2,
+                springs=np.tile(np.eye(2), (3, 1, 1)),
+                sides=np.ones((2, 4)),
             ),
         )
     ]
