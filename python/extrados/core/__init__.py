@@ -8,4 +8,4 @@ if "OMP_WAIT_POLICY" not in os.environ:
     os.environ.setdefault("GOMP_SPINCOUNT", "1000")
 
 # As it is loaded, the OpenBLAS of scipy waits for ever for a buffer that finds no room: early, before memory is short
-import scipy.linalg  # noqa: E402, F401
+import scipy.linalg  # noqa: F401
