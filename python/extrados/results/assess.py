@@ -19,7 +19,7 @@ class AssessHazard(ResultModel):
     kind: str = fact("kind of [motion]")
     told: str = fact("description of the hazard in words")
     motions: int = fact("number of motions")
-    member: int = maybe("for strategies that use one motion only: its number in the set of motions, counted from 1")
+    member: int = maybe("number of the motion in the set, counted from 1; only for strategies that use one motion")
     chosen_by: str = maybe("rule that selected this motion from the set")
     peak_ground_acceleration_g: float = fact("peak ground acceleration: the demand for strategies that apply a constant acceleration", "g")
     peak_told: str = fact("source of that peak")

@@ -115,8 +115,8 @@ class Checked(KindResults):
             if not holds and (self.margin_associated or 0.0) >= 1.0:
                 outcome = "open"
                 remarks = (
-                    f" Joints slide: with the {DILATANT} the check is satisfied (factor {self.margin_associated:.3g}), "
-                    f"without dilatancy it is not. The outcome is open.{remarks}"
+                    f" Joints slide: with the {DILATANT} the check is satisfied (factor {self.margin_associated:.3g}); without "
+                    f"dilatancy the check is not satisfied. The outcome is open.{remarks}"
                 )
             return judge(
                 f"{worst.words} governs and is {'satisfied' if holds else 'not satisfied'}, by {name}: demand {worst.demand:.3g}, "

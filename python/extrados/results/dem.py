@@ -107,15 +107,15 @@ class BlocksRun(KindResults):
     residual_slip_m: float = fact("greatest slip of the joints at the end of the run", "m")
     slip_ratio: float = fact("greatest ratio of the slip of a joint to its length")
     slip_limit_ratio: float = fact(
-        "limit of the ratio of slip to joint length (0.25): beyond it, the distance from the middle of "
-        "the joint to its end has decreased to less than half, and the outcome is open (no verdict)"
+        "limit of the ratio of slip to joint length (0.25). At this slip, half of the distance from the middle of the joint to its "
+        "end is lost. Beyond the limit, the outcome is open (no verdict)"
     )
     slipped_joint: str | None = fact("joint with the greatest ratio of slip to length; null if no joint slides by 1 % of its length")
     off_footing: list[str] = fact("blocks that slid off their footings; only recorded if the deck gives no floor")
     decided_by_last_digits: bool = fact(
         "whether the response is chaotic. The motion is scaled by 1 + 1e-6: the response is chaotic if displacements change by more "
-        "than 1/100 of the displacement that counts as collapse, or if only one of the two runs collapses. If they change by more than "
-        "1/1000, scale factors up to 1 + 1e-4 are tried too. False if this was not checked"
+        "than 1/100 of the displacement that counts as collapse, or if only one of the two runs collapses. For changes above "
+        "1/1000, scale factors up to 1 + 1e-4 are tried too. The value is false if the response was not checked"
     )
     perturbation_growth: float | None = fact(
         "growth of a perturbation, if the motion is scaled by 1 + 1e-6: greatest change of a displacement before collapse, divided by "
@@ -128,7 +128,7 @@ class BlocksRun(KindResults):
     damping_loss_J: float = fact("energy lost in damping", "J")
     peak_base_shear_N: float = fact(
         "greatest horizontal force of the ground on the blocks over the output times, at the initial contacts and at the anchors of "
-        "ties and dampers. Contacts formed later are not included; a warning says if there are any",
+        "ties and dampers. Contacts that form later are not included; if such contacts form, a warning is given",
         "N",
     )
     peak_base_shear_over_weight: float = fact("greatest horizontal force of the ground, divided by the weight of the structure")
@@ -140,9 +140,9 @@ class BlocksRun(KindResults):
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )
     edge_stress_at_rest_Pa: float | None = maybe(
-        "greatest compressive stress at an edge or corner of a joint at the start of the motion (constant loads, and with the initial "
-        "rotation if there is one): linear pressure without tension. On rigid contacts it includes the ground motion of the first time "
-        "step. Null if an edge or a corner alone carries the load",
+        "greatest compressive stress at an edge or corner of a joint, at the start of the motion, for a linear pressure without "
+        "tension. Constant loads act, and the initial rotation if the deck gives one. With rigid contacts, the ground motion of the "
+        "first time step acts too. Null if an edge or a corner alone carries the load",
         "Pa",
     )
     ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each of its segments")

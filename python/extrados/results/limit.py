@@ -203,7 +203,7 @@ class Tilt(KindResults):
     non_associated_reason: str = maybe("reason for the missing collapse state without dilatancy, if only the upper bound is given")
     touching_joints: list[int] = fact("joints in which the thrust line reaches an end of the joint without forming a hinge")
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires at collapse")
-    required_friction_joint: int = fact("the joint that needs it")
+    required_friction_joint: int = fact("joint with the greatest required friction")
     geometric_safety_factor: float | None = fact(
         "geometric safety factor without tilt: 1 divided by the least central part of the joints that "
         "contains a thrust line (found within 0.001), at most 100. Null if not requested, or if a "
@@ -326,7 +326,7 @@ def judge_design(design: float, least: float | None, most: float, demand: Demand
     lower = none if least is None else f"the lowest value found is {least:.3g} g"
     text = (
         f"Joints slide. The design value of the collapse acceleration (horizontal, constant) is {design:.3g} "
-        f"g, the lowest of the load paths; {lower}; {upper}"
+        f"g, the lowest value of the load paths with elastic joints; {lower}; {upper}"
     )
     if peak is None:
         return judge(f"{text}. There is no comparison with a demand, because the deck does not give exactly one motion.", None, design, "g")
@@ -384,7 +384,7 @@ class ThrustLine(ResultModel):
     )
     over_weight: float = maybe("horizontal thrust, divided by the weight of the structure")
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires")
-    required_friction_joint: str = fact("the joint that needs it")
+    required_friction_joint: str = fact("joint with the greatest required friction")
     greatest_eccentricity_ratio: float = fact(
         "greatest eccentricity (distance from the middle of the joint), divided by the length of the joint"
     )

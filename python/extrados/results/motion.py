@@ -128,7 +128,7 @@ class UseOfLimits(ResultModel):
     flow: float = fact("velocity of the motion, divided by the greatest velocity of the table")
     force: float = fact("force that the motion requires, divided by the greatest force of the table")
     governing: Literal["stroke", "flow", "force"] = fact(
-        "limit of the table that governs: the one nearest to being reached, or exceeded most"
+        "limit of the table that governs: the motion comes nearest to this limit, or exceeds it most"
     )
 
 

@@ -36,7 +36,7 @@ class ThrustNetwork(KindResults):
     )
     vertical_safety_factor: float | None = fact(
         "1 divided by the part of the vertical depth that the most central network needs; null without a demand. Where surfaces are "
-        "steep (near the springing of a dome), it exceeds the geometric safety factor, which refers to the thickness"
+        "steep (near the springing of a dome), this value exceeds the geometric safety factor, which refers to the thickness"
     )
     load_direction_deg: float = fact("direction of the horizontal load in plan", "deg")
     horizontal_load_g: float | None = fact(
@@ -78,7 +78,7 @@ class ThrustNetwork(KindResults):
         part = self.least_part_of_depth
         if part > 1.0:
             return judge(
-                f"No network found on this form diagram lies within the structure: the best one needs {part:.2f} times the depth.",
+                f"No network found on this form diagram lies within the structure: the best network requires {part:.2f} times the depth.",
                 outcome="open",
             )
         violated = []

@@ -137,7 +137,7 @@ class HandOver(ResultModel):
         "starts from the positions and velocities of the blocks at this time",
         "s",
     )
-    reason: str = fact("condition that fails, and where")
+    reason: str = fact("condition that fails, with its place")
     outcome: WholeOutcome = fact("outcome of the whole motion")
     fixed_hinges_outcome: RockingOutcome = fact("outcome that the analysis with fixed hinges and without sliding would give")
     contacts: DemRun = fact("run of the blocks with rigid contacts; its times are those of the motion", source="Moreau 1988")
@@ -521,8 +521,8 @@ class Assessment(KindResults):
         "differ by a factor of more than 1.3; null if no impulse can cause collapse"
     )
     margin_conditions: list[str] = fact(
-        "assumptions, one sentence each, that hold under the motion but not under the motion times the "
-        "safety factor; the safety factor is valid only under these assumptions"
+        "assumptions that hold under the motion, but fail under the motion times the safety factor (one sentence each). The safety "
+        "factor is valid only under these assumptions"
     )
     violated: list[str] = fact("other violated assumptions, one sentence each")
     primary_impulse: PrimaryImpulse | None = fact("strongest impulse of the motion; null if the motion has none")

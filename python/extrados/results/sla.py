@@ -181,8 +181,8 @@ class Comparison(ResultModel):
 
     peak_ratio: float = fact("greatest calculated load, divided by the greatest measured load")
     tail_ratios: list[float | None] = fact(
-        "calculated load divided by measured load, after the peak, where the measured load has decreased "
-        "to 75, 50 and 25 % of its peak; null if one of the curves ends before"
+        "calculated load divided by measured load, after the peak: at the displacements at which the measured load is 75, 50 and 25 "
+        "% of its peak; null if one of the curves ends before"
     )
     inside_ratio: float | None = fact(
         "share of the measured points at which the calculated envelope lies between the least and the greatest measured load"
@@ -233,7 +233,7 @@ class Sla(SlaCurve, KindResults):
             peaks = least.peak_load_N is not None
             if self.verification is not None and self.verification.decides:
                 return self.verification.judged(f"The greatest base shear is {load}.")
-            text = f"The wall {('can carry' if peaks else 'has carried, without a peak,')} {load} ({abs(reached):.3g} g times its masses)."
+            text = f"The wall {('can carry' if peaks else 'carries at least')} {load} ({abs(reached):.3g} g times its masses)."
             return capacity_alone(text, abs(reached), "g", None if peaks else "lower")
         if any(c.peak_load_N is None for c in curves):
             text = f"The load has reached {load}, and the run ended before it decreased, so the capacity of the building is not known"

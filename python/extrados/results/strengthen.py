@@ -11,7 +11,7 @@ class GoverningRange(ResultModel):
     """A mechanism that governs over a range of the size of an intervention."""
 
     first: float = fact("size from which this mechanism governs, in the unit of the sizes")
-    last: float = fact("size up to which this mechanism governs: the next mechanism, or the end of the curve, begins there")
+    last: float = fact("size up to which this mechanism governs. At this size, the next mechanism begins or the curve ends")
     capacity_first: float = fact("capacity at the lower end of this range of sizes, in the unit of the target")
     capacity_last: float = fact("capacity at the upper end of this range of sizes, in the unit of the target")
     direction: str = fact("direction of the load: +x or -x; in space, the angle in plan")
@@ -127,7 +127,7 @@ class Strengthen(KindResults):
     combination: list[CombinedTie] = maybe("combination of ties with the least total force, if more than one tie carries a force")
     combination_cost: float = maybe("relative cost of the combination")
     combination_meets_target: bool = maybe(
-        "whether the combination meets the target; if joints in compression slide, whether it does so without dilatancy too"
+        "whether the combination meets the target. If joints in compression slide, the target must be met without dilatancy too"
     )
     fragility: FragilityPair = maybe("probability of collapse before and after the cheapest intervention")
 

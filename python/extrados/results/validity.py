@@ -140,7 +140,7 @@ Pushover = Validity(
 Dem = Validity(
     "Each block moves independently. Contacts open and slide. They lose energy by damping, or by rigid impacts.",
     "Stiffness, damping and rebound of joints are uncertain parameters: vary them. Blocks do not crack. If the "
-    "response is chaotic, one run is only one sample. The pressure of water is that at rest, and joints that crush recover when they close.",
+    "response is chaotic, one run is only one sample. The water pressure is hydrostatic. Crushed joints recover when they close.",
 )
 DemDomain = Validity(
     "A single pulse acts on blocks that move independently, as in the discrete-element analysis. At "
@@ -175,14 +175,15 @@ Modes = Validity(
 )
 FrameModes = Validity(
     "Piers and spandrels vibrate about the equilibrium under self-weight. Walls have no out-of-plane stiffness.",
-    "Sections that are open under self-weight stay open. Out of their planes, the masses of walls "
-    "move with the corners, and linearly between them.",
+    "Sections that are open under self-weight stay open. Out of their planes, the masses of walls follow the corners, with linear "
+    "interpolation between two corners.",
 )
 FramePushover = Validity(
-    "Walls are plane frames of piers and spandrels between rigid nodes. Sections carry no tension and crush; piers "
-    "slide or crack in shear; beyond its drift limit an element loses its lateral strength and keeps its vertical "
+    "Walls are plane frames of piers and spandrels between rigid nodes. Sections carry no tension, and they crush. Piers slide or "
+    "crack in shear. Beyond its drift limit, an element loses its lateral strength and keeps its vertical "
     "load. All nodes of a wall on one level have the same displacement along the wall.",
-    "The frame model excludes out-of-plane failure of walls: with a code, each wall is checked for it separately. Spandrels carry no "
+    "The frame model excludes out-of-plane failure of walls. If the deck gives a code, this failure is checked separately for each "
+    "wall. Spandrels carry no "
     "normal force except that of ties and ring beams. At a corner, a wall lifts at most the weight on the effective width of its flange. "
     "Strengths and "
     "drift limits are those of codes, and tested walls differ from them by about 20 %. With irregular openings the division into piers "
