@@ -33,7 +33,7 @@ def run(context: Context, options: Assess) -> Result:
         work.further("longer runs", lambda: prolong(work))
         if options.advise and not work.advised:
             work.further("strengthening", lambda: advise(work))
-        work.further("closer looks where strategies differ", lambda: refine(work))
+        work.further("additional runs for strategies that differ", lambda: refine(work))
         work.further("finer checks of contradictions", lambda: check_finer(work))
         if options.moves:
             work.asker.deadline = budget.STOPPED_AFTER * options.budget
@@ -94,7 +94,7 @@ def _scaled(work: Work) -> None:
         return
     curve = found.of(OverLevels)
     low, high = scaled_margin(curve)
-    words = f"{work.rows['rocking'].parameters}; its margin from {row.parameters}"
+    words = f"{work.rows['rocking'].parameters}; critical scale factor from {row.parameters}"
     if high is None and low != curve.levels[-1]:
         words += (
             "; at the next greater scale factor, blocks slide or hinges form outside the assumed mechanism, "

@@ -19,7 +19,7 @@ SLID = 0.01
 #: Reasons in a few words
 HEADLINES = {
     "violated": "assumptions that do not hold",
-    "static-peak": "how long the peak lasts",
+    "static-peak": "the duration of the peak",
     "impact-rule": "the energy loss at impacts",
     "last-digits": "a chaotic response",
     "sine-for-record": "the parts of the motion outside its strongest sine",

@@ -69,7 +69,7 @@ def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None
     names = " and ".join(labels[one.strategy] for one in contributions)
     said += (
         "If the peak of the hazard acted as a constant horizontal acceleration, the probability of collapse would be "
-        f"{percent(p)} (90 % confidence interval {percent(low)} to {percent(high)}). It follows from the model "
+        f"{percent(p)} (90 % confidence interval {percent(low)} to {percent(high)}). This probability follows from the model "
         f"uncertainty of {names}. This static number is not the probability of collapse in the earthquake."
     )
     if any(row.axis != STATIC and row.outcome == "stands" for row in rows):

@@ -42,7 +42,7 @@ def code_factors(facts: Facts, pairs: list[Pair]) -> Reason | None:
         "code-factors",
         other,
         f"{name} of the code compares a demand of {check.demand:.3g} g with a capacity of {check.capacity:.3g} g. This "
-        f"capacity is the collapse acceleration by statics, {least:.3g} g{taking}, multiplied by {q / fc:.3g}, which is "
+        f"capacity is the collapse acceleration by statics, {least:.3g} g{taking}, multiplied by {q / fc:.3g}. This factor is "
         f"{'1' if q == 1.0 else f'the behaviour factor q = {q:g}'} divided by the confidence factor FC = {fc:g}.{reserve}",
         code_capacity=check.capacity,
         static_capacity=least,
@@ -87,7 +87,7 @@ def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
         "code-check",
         mine,
         f"The governing check of the codes is {name} of {check.code}, demand {check.demand:.3g}, capacity "
-        f"{check.capacity:.3g} {check.unit}{moves}. The safety factor is {margin:.3g}. By {what} it would be {other:.3g}.",
+        f"{check.capacity:.3g} {check.unit}{moves}. The safety factor is {margin:.3g}. By {what} the safety factor would be {other:.3g}.",
         governing_margin=margin,
         demand=check.demand,
         capacity=check.capacity,

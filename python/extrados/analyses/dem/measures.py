@@ -361,8 +361,10 @@ def water_arrays(model: Model) -> dict[str, Array]:
         return {}
     return {
         "water_point": Array(water.point, ("wet_point", "axis"), "m", "points of the faces and joints on which water presses"),
-        "water_pressure": Array(water.force / water.area[:, None], ("wet_point", "axis"), "Pa", "pressure there, to +x and upward"),
-        "water_block": Array(water.block, ("wet_point",), "", "numbers of the blocks on which it acts"),
+        "water_pressure": Array(
+            water.force / water.area[:, None], ("wet_point", "axis"), "Pa", "water pressure at these points, to +x and upward"
+        ),
+        "water_block": Array(water.block, ("wet_point",), "", "numbers of the blocks on which the water presses"),
     }
 
 

@@ -142,7 +142,7 @@ def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end
             "overlap": f"{' and '.join(names)} overlap at the start: correct the geometry",
             "unsettled": f"the structure does not stand under {loads}: {first} falls",
             "restless": f"the structure does not come to rest under {loads} in {run.settling_steps} steps ({first} moves most), so "
-            f"discrete elements do not show whether it stands{wedged}",
+            f"discrete elements do not show whether the structure stands{wedged}",
             "blow-up": f"the error of the energy balance is too large: the run was stopped at step {run.steps} ({run.stop_time:.4g} s), "
             f"and {first} is the fastest block. Try a smaller time step",
         }.get(run.reason, f"stopped: {run.reason} ({first})")
@@ -210,8 +210,8 @@ def doubts_of_rigid_mortar(values: ContactValues, joint: str = "joint") -> list[
         return []
     return [
         *_doubts_of_tension(values, joint),
-        "with rigid contacts, as in limit analysis, mortar holds if its strength allows any equilibrium. Brittle mortar may fail earlier "
-        "where several joints, or both ends of a joint, share a force: compare with springs",
+        "with rigid contacts, as in limit analysis, mortar holds if an equilibrium within its strength exists. If several joints, "
+        "or both ends of a joint, share a force, brittle mortar may fail earlier: compare with springs",
     ]
 
 

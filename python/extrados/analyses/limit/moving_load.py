@@ -557,7 +557,8 @@ def _words(options: MovingLoad, r: out.MovingLoad, what: str, where: str, positi
         factors = "" if r.live_load_factor == 1.0 else f" with its load factor of {r.live_load_factor:.3g}"
         text = (
             f"{what[:1].upper()}{what[1:]} carries {r.adequacy_factor:.3g} times {'the train' if r.train == 'train' else r.train}{factors} at "
-            f"the most dangerous place, with {where}{heading}: {three_figures(r.collapse_load_N / 1e3)} kN are then on the structure."
+            f"the most dangerous place, with {where}{heading}. The total load on the structure is then "
+            f"{three_figures(r.collapse_load_N / 1e3)} kN."
         )
     else:
         text = f"The least collapse load of {what} is {three_figures(r.collapse_load_kN_per_m)} kN per metre of depth, with {where}."

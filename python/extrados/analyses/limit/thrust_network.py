@@ -135,7 +135,7 @@ def words_of(r: out.ThrustNetwork) -> str:
     text = f"Networks on the {r.form} diagram of {r.branches} branches: "
     if r.least_part_of_depth > 1.0:
         return (
-            f"{text}no network found lies within the structure. The best one requires {r.least_part_of_depth:.2f} "
+            f"{text}no network found lies within the structure. The best network requires {r.least_part_of_depth:.2f} "
             f"times the depth (bound for this form diagram: {r.least_part_bound or 0.0:.2f} times). This does not prove "
             "collapse, because another form diagram can give a network."
         )

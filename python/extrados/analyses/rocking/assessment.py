@@ -128,7 +128,7 @@ def _limits_of_criterion(context: Context, r: out.Assessment) -> list[str]:
         why = (
             "the criterion does not cover impulses of this amplitude"
             if beyond
-            else "the criterion covers a single impulse, not the motion before and after it"
+            else "the criterion covers a single impulse, not the motion before and after this impulse"
         )
         warnings.append(
             f"the criterion predicts that the structure {r.verdict}, but under the whole motion the structure "

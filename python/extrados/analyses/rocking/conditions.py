@@ -249,7 +249,7 @@ def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditio
         if at_rest:
             text = (
                 f"{ELSEWHERE} of the resting {rocker.word} at {leaves.time_s:.3f} s: with its prestressed ties another mechanism opens at "
-                f"{min(watch.opening):.3g} g, before the assumed one at {rocker.uplift:.3g} g.{use}"
+                f"{min(watch.opening):.3g} g, before the assumed mechanism at {rocker.uplift:.3g} g.{use}"
             )
         elif len(watch.joints) > 1:
             text = f"{ELSEWHERE}: the thrust line passes outside {leaves.joint} at {leaves.time_s:.3f} s{far}.{use}"

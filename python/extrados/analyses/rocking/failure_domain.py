@@ -516,7 +516,7 @@ def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves
         start = "lift an edge (held on)"
     below = np.isfinite(curves.mode_i) & ~(curves.mode_i >= curves.mode_ii)
     modes = (
-        "Collapse after an impact (Mode I) governs where its curve is below that of collapse without an impact (Mode II)"
+        "Mode I (collapse after an impact) governs at durations at which its curve is below that of Mode II (collapse without an impact)"
         if below.any()
         else "At no duration does an impact (Mode I) reduce the amplitude that causes collapse"
     )

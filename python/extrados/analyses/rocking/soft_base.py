@@ -204,5 +204,5 @@ def _answer(context: Context, model: SoftBaseModel, r: SoftBaseResponse, found: 
     return (
         f"On its compliant base the {word} {said}. An edge lifts {count(lifts, 'time')}. The peak ground "
         f"acceleration is {context.motion.peak / GRAVITY:.3f} g. A constant acceleration of {found.uplift_acceleration_g:.3f} "
-        f"g lifts an edge, and one of {found.soft_base.capacity_g:.3f} g overturns the block.{rigidly}"
+        f"g lifts an edge, and a constant acceleration of {found.soft_base.capacity_g:.3f} g overturns the block.{rigidly}"
     )

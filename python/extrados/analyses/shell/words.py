@@ -72,7 +72,7 @@ def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any
         if curve["stop"] == "no point limits the load":
             return f"{sense} the load has no limit, because the deck gives no strength at which the masonry cracks, crushes or slides."
         return f"{sense}: no equilibrium state was found."
-    carries = "carries" if curve["peak_load_N"] is not None else "has reached, without a peak,"
+    carries = "carries" if curve["peak_load_N"] is not None else "carries at least"
     part = f"{curve['base_shear_coefficient']:.3g} of its weight of {numbers['weight_N'] / 1e3:.4g} kN"
     slides = curve["capacity_N"] < load
     if slides:

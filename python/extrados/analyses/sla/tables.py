@@ -405,7 +405,10 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     @model_validator(mode="after")
     def _consistent(self) -> "Sla":
         if any(load.kind == "displacement" for load in self.constant or []):
-            raise ValueError("an imposed displacement cannot be a constant load, because its nodes could then not move under loads B")
+            raise ValueError(
+                "an imposed displacement cannot be a constant load, because the displaced nodes could then not move "
+                "under the loads that increase"
+            )
         reference = self.reference or []
         self.check_stages(
             {

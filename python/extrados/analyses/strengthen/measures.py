@@ -79,7 +79,7 @@ class Statics:
         self.senses: tuple[float, ...] = tuple(s for s in given if {"left": -1, "right": 1}.get(wall or "") != s)
         if not self.senses:
             raise Refused(
-                f"direction: the abutting wall is on that side ({wall}), so the building cannot collapse towards it",
+                f"direction: the abutting wall is on that side ({wall}), so the building cannot collapse towards this wall",
                 ("analysis", "direction"),
             )
 
@@ -344,7 +344,7 @@ def unmet_reason(measure: Measure, worth: Worth) -> str:
     if worth.beside is not None and worth.beside <= (1.0 - SLACK) * measure.target:
         return (
             "only the upper bound of limit analysis (dilatant friction) meets the target. The lowest "
-            f"collapse acceleration found without dilatancy is {worth.beside:.3g} g, which does not"
+            f"collapse acceleration found without dilatancy is {worth.beside:.3g} g, and this value does not meet the target"
         )
     return ""
 

@@ -122,7 +122,8 @@ def _check_force(work: Sizing, one: TieAlternative, place: int, force: float, st
         return force, worth, False
     if worth.bound != "upper":
         raise NoAnswer(
-            f"{one.name}: the least force {force:.6g} N and the collapse load at it, {worth.value} g, are not consistent: {worth.reason}"
+            f"{one.name}: the least force {force:.6g} N and the collapse load under this force, {worth.value} g, are not "
+            f"consistent: {worth.reason}"
         )
     low, high = force, min(2.0 * force, one.most)
     while not reached(statics, at(high)):
