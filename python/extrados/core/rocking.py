@@ -361,7 +361,7 @@ def ensemble(
     """
     n = len(np.asarray(run_body))
     if not n:
-        raise ValueError("an ensemble needs a run")
+        raise ValueError("an ensemble requires at least one run")
     with np.errstate(invalid="ignore"):
         values = {
             name: real(name, np.broadcast_to(np.asarray(value, dtype=float), (n,)), (n,))

@@ -129,8 +129,8 @@ def rounded(polygon: np.ndarray, radius: float, steps: int = 3) -> np.ndarray:
     cut = radius / np.tan(half)
     if (cut + np.roll(cut, -1) >= length).any():
         raise ValueError(
-            f"an edge has a length of {length.min():.4g} m, so nothing remains of it if corners are worn to a "
-            f"radius of {radius:g} m: give a smaller radius"
+            f"an edge has a length of {length.min():.4g} m, so nothing of this edge remains if corners are worn to a radius of "
+            f"{radius:g} m: give a smaller radius"
         )
     out = []
     for point, a, b, angle, c in zip(polygon, u, v, half, cut, strict=True):

@@ -215,7 +215,10 @@ class Blocks(Structure):
             if any(len(point) != 2 for point in block.points):
                 raise ValueError(f"block {i + 1}: a vertex does not have the form [x, y]")
         if (self.scan is None) == (self.file is not None and self.file.lower().endswith(CLOUDS)):
-            raise ValueError(f"scan: [structure.scan] is required if `file` is a point cloud ({', '.join(CLOUDS)}), and only then")
+            raise ValueError(
+                f"scan: [structure.scan] is required if `file` is a point cloud ({', '.join(CLOUDS)}); for other "
+                f"files, remove [structure.scan]"
+            )
         if self.unit is not None and self.file is not None and self.file.lower().endswith(tuple(MODELS)):
             raise ValueError(
                 f"unit: {self.file} gives its own unit (IFC), or is in metres by its standard (glTF). Remove "

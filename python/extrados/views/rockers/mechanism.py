@@ -80,7 +80,7 @@ class MechanismModel:
             if not found[1][0].gamma < 0.0 < found[0][0].gamma:
                 raise NoEquilibrium
         except Immovable as error:
-            raise NoView(f"it does not rock: {error}", WHOLE) from None
+            raise NoView(f"the structure does not rock: {error}", WHOLE) from None
         except NoEquilibrium:
             raise without_restraints(cannot_stand(limit)) from None
         return found

@@ -70,7 +70,7 @@ def refuse_stack(building: Masonry, linear: bool = False) -> None:
         raise NoView("rocking of two stacked blocks allows no ties, dampers, hinges or wall: remove them", key)
     if building.supports.stiffness is not None:
         raise NoView(
-            "two stacked blocks rock on rigid ground here: remove `stiffness`, or use `dem`, which follows a "
+            "here, two stacked blocks can rock only on rigid ground: remove `stiffness`, or use `dem`, which follows a "
             "compliant base under any blocks",
             ("supports", "stiffness"),
         )
