@@ -63,7 +63,7 @@ class Convergence(ResultModel):
 class TieRun(ResultModel):
     """What a run asked of a tie or a damper."""
 
-    name: str = fact("its name")
+    name: str = fact("name of the tie or damper")
     peak_force_N: float = fact("greatest force of the tie or damper (by absolute value) over all time steps; tension is positive", "N")
     end_force_N: float = fact("force of the tie or damper at the end of the run", "N")
     plastic_elongation_m: float = fact("plastic elongation of the tie at the end of the run; negative for shortening", "m")

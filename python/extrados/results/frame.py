@@ -10,8 +10,8 @@ from extrados.results.verification import Verification
 class FrameMode(ResultModel):
     """A mode of vibration about the equilibrium under the weight."""
 
-    frequency_Hz: float = fact("its frequency", "Hz")
-    period_s: float = fact("its period", "s")
+    frequency_Hz: float = fact("frequency of the mode", "Hz")
+    period_s: float = fact("period of the mode", "s")
     mass_ratio_x: float = fact("participating mass along x, divided by the total mass of the levels above the ground")
     mass_ratio_y: float = fact("participating mass along y, divided by the total mass of the levels above the ground")
 
@@ -48,7 +48,7 @@ class Modes(KindResults):
 class PierLimits(ResultModel):
     """Control displacements at which the piers of a storey of a wall reach their strength, and their drift limit; null: never."""
 
-    wall: str = fact("its name")
+    wall: str = fact("name of the wall")
     storey: int = fact("number of the storey, counted from 1")
     first_at_strength_m: float | None = fact("control displacement at which the first pier reaches its strength; null if none does", "m")
     all_at_strength_m: float | None = fact(
@@ -118,7 +118,7 @@ class OutOfPlane(ResultModel):
 class WallDeflection(ResultModel):
     """A wall out of its plane, with its deflection, under a constant acceleration across its plane."""
 
-    wall: str = fact("its name")
+    wall: str = fact("name of the wall")
     acceleration_g: float = fact(
         "greatest constant acceleration that the wall carries; 0 if the wall has no equilibrium under its weight", "g"
     )

@@ -42,7 +42,7 @@ class Reaction(ResultModel):
     """Force of the ground on the structure at a joint."""
 
     joint: int = fact("number of the joint that transfers this force to the ground")
-    name: str = fact("its name")
+    name: str = fact("name of the joint on the ground")
     horizontal_N: float = fact("horizontal force of the ground on the structure, positive towards +x", "N")
     vertical_N: float = fact("vertical force of the ground on the structure, positive upwards", "N")
 
@@ -50,7 +50,7 @@ class Reaction(ResultModel):
 class TieForce(ResultModel):
     """What a state of the structure asks of a tie, strut or spring of the deck."""
 
-    name: str = fact("its name")
+    name: str = fact("name of the tie")
     force_N: float = fact("force of the tie; tension is positive", "N")
     state: Literal["slack", "carries", "yields"] = fact(
         "state of the tie. slack: no force; carries: below the yield force; yields: at the yield force"
@@ -528,7 +528,7 @@ class JointOpening(ResultModel):
     """A joint that opens or slides under moving supports."""
 
     joint: int = fact("number of the joint")
-    name: str = fact("its name")
+    name: str = fact("name of the joint")
     opening_mm: float = fact("opening of the joint at the end that opens more", "mm")
     side: OpenSide = fact("end of the joint that opens more; for arches intrados or extrados")
     slip_mm: float = fact("slip of the joint", "mm")

@@ -12,7 +12,7 @@ from extrados.schema.quantities import three_figures
 class WallShare(ResultModel):
     """What one wall carries at its foot."""
 
-    wall: str = fact("its name")
+    wall: str = fact("name of the wall")
     shear_N: float = fact("in-plane shear force of the wall, along the load", "N")
     share: float = fact("share of the base shear that the wall carries at the greatest load")
     normal_N: float = fact("normal force of the wall; compression is negative", "N")
@@ -35,7 +35,7 @@ class FirstCrack(ResultModel):
 class JointMotion(ResultModel):
     """How far a joint between walls, or a bed joint in a wall, has come apart."""
 
-    joint: str = fact("its name")
+    joint: str = fact("name of the joint")
     wall: str = fact("wall that contains the joint, or that abuts on another wall at the joint")
     opening_m: float = fact("greatest opening of the joint, at the greatest load", "m")
     slip_m: float = fact("greatest sliding of the joint, at the greatest load", "m")
@@ -68,7 +68,7 @@ class SeatMotion(ResultModel):
 class FootForce(ResultModel):
     """What a foot of a vault presses on the ground with, at the greatest load or at the end of a settlement."""
 
-    foot: str = fact("its name")
+    foot: str = fact("name of the foot")
     thrust_N: float = fact("outward thrust at the foot; for a dome, the sum around its circumference", "N")
     vertical_N: float = fact("vertical force of the foot on the ground, positive downwards", "N")
 
@@ -87,8 +87,8 @@ class Flanges(ResultModel):
 class SlidingLevel(ResultModel):
     """Coulomb's limit of a level: a base of a storey, or bed joints that cut all walls at a height."""
 
-    level: str = fact("its name")
-    height_m: float = fact("its height", "m")
+    level: str = fact("name of the level")
+    height_m: float = fact("height of the level", "m")
     normal_N: float = fact("normal force on the level under the constant loads; compression is positive", "N")
     area_m2: float = fact("area of the walls at the level", "m^2")
     resistance_N: float = fact("sliding resistance: friction times normal force, plus cohesion times area", "N")
@@ -123,7 +123,7 @@ class StageOfPush(PushCurve):
     """One stage of several; loads are those in the direction of its own, with what stages before have left on. Of ground that
     gives way they are the forces that move it."""
 
-    name: str = fact("its name, or its number")
+    name: str = fact("name or number of the stage")
     of: Literal["push", "settlement"] = fact("kind of stage: push or settlement")
     prefix: str = fact("prefix of the array names of this stage; empty for the stage that gives the results of the analysis")
     start_load_N: float = fact("load at the start of the stage", "N")
@@ -133,7 +133,7 @@ class StageOfPush(PushCurve):
 class FrameCapacity(ResultModel):
     """What the piers of the weakest storey bear by the formulas of a code."""
 
-    code: str = fact("name of the code; if its formulas for a pier differ, the least strength counts")
+    code: str = fact("name of the code; if the formulas of the code for a pier differ, the least strength counts")
     base_shear_N: float = fact(
         "base shear at which the shear force in the weakest storey equals the sum of the strengths of its piers", "N"
     )
@@ -143,8 +143,8 @@ class FrameCapacity(ResultModel):
 class Variation(ResultModel):
     """The same push with another assumption."""
 
-    name: str = fact("its name")
-    factors: dict[str, float] = fact("by the deck")
+    name: str = fact("name of the variant")
+    factors: dict[str, float] = fact("factors of the variant, from the deck")
     greatest_base_shear_N: float | None = fact("greatest base shear in equilibrium", "N")
     passed: bool = fact("whether the greatest base shear is a peak, after which the base shear decreases")
     base_shear_coefficient: float | None = fact("base shear, divided by the weight of this variant")
@@ -159,7 +159,7 @@ class Pushover(PushCurve, KindResults):
     direction_deg: float = fact("direction of the load in plan", "deg")
     frequency_Hz: float = maybe("frequency of the mode that gives the distribution of the load", "Hz")
     modal_mass_ratio: float = maybe("participating mass ratio of the mode that gives the distribution of the load")
-    cracking: str = fact("how cracked material behaved")
+    cracking: str = fact("model of cracked material")
     layers: int = fact("number of integration points through the thickness of the walls")
     nodes: int = fact("nodes of the mesh")
     elements: int = fact("elements of the mesh")

@@ -93,7 +93,8 @@ class SlaCurve(ResultModel):
     stored_energy_J: float | None = fact("elastic energy at the last event in equilibrium", "J")
     dissipated_energy_J: float | None = fact(
         "dissipated energy (with friction) up to the last event in equilibrium; it never decreases. It is the work of the loads minus "
-        "the stored energy, summed from one equilibrium state to the next. Events without equilibrium count with the area of their teeth",
+        "the stored energy, summed from one equilibrium state to the next. For events without equilibrium, the area of their "
+        "saw-tooth teeth is added",
         "J",
     )
     crack_energy_J: float = fact(
@@ -159,7 +160,7 @@ class SlaCurve(ResultModel):
 class SlaStage(SlaCurve):
     """One stage of several; loads are those in the direction of its own, with what stages before have left on."""
 
-    name: str = fact("its name, or its number")
+    name: str = fact("name or number of the stage")
     prefix: str = fact("prefix of the array names of this stage; empty for the stage that gives the results of the analysis")
     start_load_N: float = fact("load at the start of the stage", "N")
     end_load_N: float | None = fact("load at the end of the stage", "N")
@@ -196,7 +197,7 @@ class Sla(SlaCurve, KindResults):
     """sla: cracks event by event under constant loads and growing ones; the curve of the first sense, and of both."""
 
     reference_load_N: float = fact("reference load: the load at multiplier 1", "N")
-    cracking: Literal["rotating", "orthotropic", "isotropic"] = fact("how cracked material behaved")
+    cracking: Literal["rotating", "orthotropic", "isotropic"] = fact("model of cracked material")
     teeth: list[int] = fact("least and greatest number of teeth of a saw-tooth law")
     nodes: int = fact("nodes of the mesh")
     elements: int = fact("elements of the mesh")

@@ -15,15 +15,15 @@ class Sensitivity(ResultModel):
     """Sobol indices of one uncertain value: its own share of the variance, and that of all in which it is involved."""
 
     rotation_first: float | None = fact("first-order Sobol index of the greatest rotation; a run that collapses counts as 1")
-    rotation_first_interval: list[float | None] = fact("its bootstrap interval")
+    rotation_first_interval: list[float | None] = fact("bootstrap interval of `rotation_first`")
     rotation_total: float | None = fact("total Sobol index of the greatest rotation")
-    rotation_total_interval: list[float | None] = fact("its bootstrap interval")
+    rotation_total_interval: list[float | None] = fact("bootstrap interval of `rotation_total`")
     collapse_first: float | None = fact(
         "first-order Sobol index of the outcome (collapse 1, otherwise 0); null if all runs have the same outcome"
     )
-    collapse_first_interval: list[float | None] = fact("its bootstrap interval")
+    collapse_first_interval: list[float | None] = fact("bootstrap interval of `collapse_first`")
     collapse_total: float | None = fact("total Sobol index of the outcome (collapse 1, otherwise 0)")
-    collapse_total_interval: list[float | None] = fact("its bootstrap interval")
+    collapse_total_interval: list[float | None] = fact("bootstrap interval of `collapse_total`")
 
 
 class Annual(KindResults):
@@ -69,7 +69,7 @@ class RotationLimit(ResultModel):
     dispersion: float = fact("dispersion of this lognormal curve (standard deviation of the logarithm)")
     median_interval: list[float | None] = fact("profile-likelihood interval of the median of this curve")
     annual_rate: float = maybe("mean annual rate at which the limit is exceeded", "1/year")
-    annual_rate_interval: list[float | None] = maybe("its profile-likelihood interval", "1/year")
+    annual_rate_interval: list[float | None] = maybe("profile-likelihood interval of `annual_rate`", "1/year")
 
 
 class MeasureDispersion(ResultModel):
@@ -205,8 +205,8 @@ class LevelShares(Annual):
         source="Baker 2015",
     )
     dispersion: float | None = maybe("dispersion of this lognormal curve (standard deviation of the logarithm)", source="Baker 2015")
-    deviance: float | None = maybe("deviance of that curve")
-    degrees_of_freedom: int = maybe("its degrees of freedom")
+    deviance: float | None = maybe("deviance of the fitted curve")
+    degrees_of_freedom: int = maybe("degrees of freedom of the deviance")
     goodness_p_value: float | None = maybe("p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true")
     median_interval: list[float | None] = maybe(
         "bootstrap confidence interval of `median`, resampled by motion (with all levels of each motion)"
@@ -219,8 +219,8 @@ class LevelShares(Annual):
     first_collapse_dispersion: float | None = maybe(
         "dispersion of this lognormal curve (standard deviation of the logarithm)", source="interval-censored likelihood: Burridge 1981"
     )
-    first_collapse_deviance: float | None = maybe("deviance of that curve")
-    first_collapse_degrees_of_freedom: int = maybe("its degrees of freedom")
+    first_collapse_deviance: float | None = maybe("deviance of the fitted curve")
+    first_collapse_degrees_of_freedom: int = maybe("degrees of freedom of the deviance")
     first_collapse_goodness_p_value: float | None = maybe(
         "p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true"
     )
@@ -230,8 +230,8 @@ class LevelShares(Annual):
         "median of the lognormal curve of the probability that rocking starts, in `intensity_unit`", source="Baker 2015"
     )
     uplift_dispersion: float | None = maybe("dispersion of this lognormal curve (standard deviation of the logarithm)", source="Baker 2015")
-    uplift_deviance: float | None = maybe("deviance of that curve")
-    uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
+    uplift_deviance: float | None = maybe("deviance of the fitted curve")
+    uplift_degrees_of_freedom: int = maybe("degrees of freedom of the deviance")
     uplift_goodness_p_value: float | None = maybe(
         "p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true"
     )
@@ -241,8 +241,8 @@ class LevelShares(Annual):
     overturning_given_uplift_dispersion: float | None = maybe(
         "dispersion of this lognormal curve (standard deviation of the logarithm)", source="Baker 2015"
     )
-    overturning_given_uplift_deviance: float | None = maybe("deviance of that curve")
-    overturning_given_uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
+    overturning_given_uplift_deviance: float | None = maybe("deviance of the fitted curve")
+    overturning_given_uplift_degrees_of_freedom: int = maybe("degrees of freedom of the deviance")
     overturning_given_uplift_goodness_p_value: float | None = maybe(
         "p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true"
     )

@@ -44,7 +44,7 @@ class OtherVerdict(ResultModel):
 class Intervention(ResultModel):
     """One alternative: its least size, its cost, and what governs then."""
 
-    name: str = fact("its name")
+    name: str = fact("name of the intervention")
     kind: Literal["tie", "strut", "spring", "ring-beam", "hoop", "chain", "change"] = fact(
         "kind of intervention: tie, strut, spring (tension and compression), ring beam with its weight, "
         "hoop or chain in space, or change of a key"
@@ -89,8 +89,8 @@ class Intervention(ResultModel):
 class CombinedTie(ResultModel):
     """Share of one tie in the combination of least total force."""
 
-    name: str = fact("its name")
-    place: str = fact("place")
+    name: str = fact("name of the tie")
+    place: str = fact("place of the tie")
     force_N: float = fact("yield force of the tie", "N")
 
 

@@ -94,7 +94,7 @@ class NoAnswerRow(ResultModel):
     """A section of a survey that cannot stand, or has no answer."""
 
     row: int = fact("line of the section in the file")
-    name: str = fact("its name")
+    name: str = fact("name of the section")
     reason: str = fact("reason why the section cannot stand or has no result")
 
 

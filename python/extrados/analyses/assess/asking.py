@@ -147,7 +147,7 @@ def row_of(
     if violated and outcome in ("stands", "collapses"):
         outcome, statement = "open", f"{statement} {' '.join(violated)}"
     if outcome == "collapses" and (held := [what for what in without if what in RESTRAINTS]):
-        violated.append(f"This strategy neglects {' and '.join(held)}, which may prevent the collapse.")
+        violated.append(f"This strategy neglects {' and '.join(held)}. Such restraints may prevent the collapse.")
         outcome, margin, statement = "open", None, f"{statement} {violated[-1]}"  # of another building
     return StrategyVerdict(
         strategy=strategy.name,

@@ -210,9 +210,9 @@ def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "frame-and-shells",
         mine,
-        f"{' '.join(told)} In the frame, sections carry no tension, and piers slide or crack at the strengths of codes. Its flanges act "
-        "only by the vertical shear at corners. The shells have the tensile strength of the masonry and also bend out of plane. They "
-        "slide only along joints that the deck gives.",
+        f"{' '.join(told)} In the frame, sections carry no tension, and piers slide or crack at the strengths of codes. The flanges "
+        f"of the frame act only by the vertical shear at corners. The shells have the tensile strength of the masonry and also bend "
+        f"out of plane. The shells slide only along joints that the deck gives.",
         **numbers,
     )
 

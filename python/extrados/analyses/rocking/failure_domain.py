@@ -513,7 +513,7 @@ def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves
     shortest = durations[np.isfinite(curves.mode_i)].min()
     start = "hinge" if model.what == "arch" else "rock"
     if isinstance(model.model, SoftBaseModel):
-        start = "lift an edge (held on)"
+        start = "lift an edge (constant acceleration)"
     below = np.isfinite(curves.mode_i) & ~(curves.mode_i >= curves.mode_ii)
     modes = (
         "Mode I (collapse after an impact) governs at durations at which its curve is below that of Mode II (collapse without an impact)"

@@ -11,7 +11,7 @@ from extrados.results.model import Array, Result, TableData
 from extrados.results.vtu import pvd, vtu
 
 #: Of each integration point: values of `place_axes`, and of `point_places`
-AXES = {"xyz": "its position", "x_axis": "x axis of its element (unit vector)", "y_axis": "y axis of its element (unit vector)"}
+AXES = {"xyz": "position", "x_axis": "x axis of the element (unit vector)", "y_axis": "y axis of the element (unit vector)"}
 PLACES = {
     "part": "number of its part, among the parts that resist bending, counted from 0",
     "wall": "number of the wall, counted from 0; -1: none",

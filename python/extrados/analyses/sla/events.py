@@ -374,8 +374,8 @@ def _constant_stage(
         most = float(events.load.max()) if len(events) else 0.0
         if events.reason == SPENT:
             raise NotCarried(
-                f"the `budget` of {options.budget:.4g} s of processor time ended while the constant loads were "
-                f"applied, at {100 * most:.3g} % of them. Increase `budget`, or use larger elements",
+                f"the `budget` of {options.budget:.4g} s of processor time ended when {100 * most:.3g} % of the constant loads were "
+                f"applied. Increase `budget`, or use larger elements",
                 WHOLE,
             )
         why = events.reason or f"{way.done} events were not enough"
