@@ -46,7 +46,7 @@ def test_a_class_from_both_sides(browser: Any, room: Served) -> None:
     teacher.click("text=Freeze")
     until(pupils[0], "document.querySelector('.extrados').classList.contains('frozen')")
     pupils[0].screenshot(path=SHOTS / "class-frozen.png")
-    teacher.click("text=Let them go on")
+    teacher.click("text=Let the pupils continue")
     until(pupils[0], "!document.querySelector('.extrados').classList.contains('frozen')")
     teacher.click(".pupil.bad")
     until(teacher, "window.extrados.name === 'pupil-2.toml'")

@@ -9,10 +9,9 @@ from extrados.schema.table import Table, key
 
 
 class Damper(Table):
-    """A damper between two stones, or from a stone to the ground: [[dampers]].
+    """A damper between two blocks, or from a block to the ground: [[dampers]].
 
-    Viscous, F = c |v|^n, or friction behind a brace: elastic up to the force at which it slides, and sliding under that
-    force in both senses.
+    Viscous: F = c |v|^n. Friction behind a brace: elastic up to the slip force, then sliding under this force in both senses.
     """
 
     name: str | None = key(None, "name in the results; default: damper 1, damper 2 and so on", max_length=80)
@@ -62,7 +61,7 @@ class Damper(Table):
 
 
 class AddedHinge(Table):
-    """Damping and stiffness added at joints, against the turn of the stones on both sides: [[hinges]]."""
+    """Stiffness and damping added at joints, which act on the relative rotation of the adjacent blocks: [[hinges]]."""
 
     name: str | None = key(None, "name in the results; default: hinge 1, hinge 2 and so on", max_length=80)
     joints: list[str] = key(

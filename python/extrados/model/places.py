@@ -37,7 +37,7 @@ Range = Annotated[list[float], BeforeValidator(_range), _OneOrTwo("m")]
 class Placed(Table):
     """Something on the nodes of an edge, within ranges of x and y, or (x and y single) on the nearest node."""
 
-    edge: Literal["left", "right", "bottom", "top"] | None = key(None, "an outer edge")
+    edge: Literal["left", "right", "bottom", "top"] | None = key(None, "outer edge of the wall")
     x: Range | None = key(None, "x of the place, or its range [from, to]")
     y: Range | None = key(None, "y of the place, or its range [from, to]")
 
@@ -51,8 +51,8 @@ class Placed(Table):
 class Opening(Table):
     """A rectangle cut out: an opening, or a notch where it reaches an edge."""
 
-    x: Range = key(about="[from, to]")
-    y: Range = key(about="[from, to]")
+    x: Range = key(about="range [from, to] of x")
+    y: Range = key(about="range [from, to] of y")
 
     @model_validator(mode="after")
     def _area(self) -> "Opening":

@@ -15,7 +15,7 @@ NO_SLIDING_COEFFICIENT = 1e3
 
 
 class Material(Table):
-    """The stone or the homogenised masonry: density, elastic constants, and the strengths of what may crack or crush."""
+    """Material of the blocks, or homogenised masonry: density, elastic constants, and strengths for cracking and crushing."""
 
     starter: ClassVar = {"young": '"6.9 GPa"', "poisson": "0.25", "tensile_strength": '"0.2 MPa"', "fracture_energy": '"50 N/m"'}
     density: Density = key(2000.0, "density", ge=0, le=30000)
@@ -68,7 +68,7 @@ class Material(Table):
     crushing_energy: Energy | None = key(
         None, "crushing energy Gc per area; sequentially linear analysis includes crushing only if this value is given", gt=0
     )
-    crushing: Literal["linear", "exponential", "hordijk"] = key("linear", "softening in compression")
+    crushing: Literal["linear", "exponential", "hordijk"] = key("linear", "softening law in compression")
     lateral_reduction: bool = key(
         False,
         "whether lateral compression reduces the tensile strength ft: s1/ft - s2/fc <= 1 (s1, s2: principal stresses, tension positive; "
@@ -142,7 +142,7 @@ class JointType(Table):
 
 
 class Joints(Table):
-    """The joints between the stones, and those on the ground."""
+    """The joints between the blocks, and the joints on the ground."""
 
     friction: Annotated[float, Field(ge=0, le=10)] | Literal["no-sliding"] = key(
         0.7, 'coefficient of friction; "no-sliding" excludes sliding (Heyman\'s assumption)', source="thesis 3.2, 7.3"
@@ -221,14 +221,14 @@ class Joints(Table):
 class Held(Placed):
     """Nodes of a finite-element mesh that are held."""
 
-    fix: Literal["x", "y", "xy"] = key("xy", "directions that are held")
+    fix: Literal["x", "y", "xy"] = key("xy", "directions in which the nodes are held")
     stiffness: Annotated[float, Field(gt=0)] | None = key(
         None, "stiffness of the springs that replace a rigid support, in N/m at each node"
     )
 
 
 class Supports(Table):
-    """What the building stands on. Stones stand on the joints to the ground that the structure has."""
+    """The supports of the building. Blocks are supported by the joints that the structure has with the ground."""
 
     stiffness: Stiffness | None = key(
         None, "stiffness of the ground per area, in series with the joints on the ground; for `rocking`, these joints are rigid", gt=0
@@ -277,7 +277,7 @@ class Movement(Table):
     """A support that gives way, slowly, starting and ending at rest."""
 
     joint: str = key(about="name of a joint on the support")
-    dx: Length = key(0.0, "to the right")
+    dx: Length = key(0.0, "movement towards +x")
     dy: Length = key(
         0.0,
         "in a plane section: upward movement; negative is a settlement. In space: movement along y, the second direction in plan. An "

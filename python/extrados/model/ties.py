@@ -14,8 +14,7 @@ Place = Annotated[list[Length], Field(min_length=2, max_length=3)]
 
 
 class Tie(Table):
-    """A straight tie, strut or spring between two stones, or from a stone to the ground; in space also a chain or a hoop:
-    [[ties]]."""
+    """A straight tie, strut or spring between two blocks, or from a block to the ground; in space also a chain or a hoop: [[ties]]."""
 
     name: str | None = key(None, "name in the results; default: tie 1, tie 2 and so on", max_length=80)
     start: Place = key(about="[x, y], in space [x, y, z], of the anchorage in a block; for a hoop, any point at its height")

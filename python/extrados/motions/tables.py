@@ -14,32 +14,32 @@ class Constant(Motion):
 
     kind: Literal["constant"]
     amplitude: Acceleration = key(about="ground acceleration")
-    duration: Time = key(10.0, "how long it acts", gt=0)
+    duration: Time = key(10.0, "duration of the acceleration", gt=0)
 
 
 class StepPulse(Motion):
-    """Amplitude for the duration, then minus half of it for twice as long (no velocity is left)."""
+    """Step pulse: the amplitude for the duration, then minus half of the amplitude for twice the duration (final velocity zero)."""
 
     kind: Literal["step-pulse"]
-    amplitude: Acceleration = key(about="a_p, of the first part")
-    duration: Time = key(about="t_p, of the first part", gt=0)
+    amplitude: Acceleration = key(about="amplitude a_p of the first part")
+    duration: Time = key(about="duration t_p of the first part", gt=0)
 
 
 class SinePulse(Motion):
     """One full cycle of a sine."""
 
     kind: Literal["sine-pulse"]
-    amplitude: Acceleration = key(about="A_p")
-    period: Time = key(about="T_p", gt=0)
+    amplitude: Acceleration = key(about="amplitude A_p of the sine")
+    period: Time = key(about="period T_p of the sine", gt=0)
 
 
 class Harmonic(Motion):
-    """Harmonic motion; amplitude constant, growing over `ramp`, or under a sinusoidal carrier (thesis 5.3.2)."""
+    """Harmonic motion: constant amplitude, amplitude that increases over `ramp`, or a sinusoidal carrier (thesis 5.3.2)."""
 
     kind: Literal["harmonic"]
     amplitude: Acceleration = key(about="greatest amplitude")
-    frequency: Frequency = key(about="in Hz, not rad/s", gt=0, le=1000)
-    duration: Time = key(10.0, "how long it acts", gt=0)
+    frequency: Frequency = key(about="frequency in Hz (not in rad/s)", gt=0, le=1000)
+    duration: Time = key(10.0, "duration of the motion", gt=0)
     phase: Literal["sine", "cosine"] = key("sine", "phase at the start. sine: starts at zero; cosine: starts at the amplitude")
     ramp: Time = key(0.0, "time over which the amplitude increases linearly from zero", ge=0)
     carrier: Frequency | None = key(None, "frequency of a sinusoidal carrier, whose amplitude the motion modulates", gt=0, le=1000)
@@ -52,7 +52,7 @@ class Harmonic(Motion):
 
 
 class Pulse(Motion):
-    """A single pulse of another shape; `sine-pulse` and `step-pulse` are kinds of their own."""
+    """A single pulse of another shape; `sine-pulse` and `step-pulse` are separate kinds."""
 
     kind: Literal["pulse"]
     starter: ClassVar = {"shape": '"ricker"'}
@@ -101,8 +101,8 @@ class Treated(Motion):
     pgv: Velocity | None = key(None, "scale the motion to this peak velocity (one factor for all components)", gt=0)
     arias: Velocity | None = key(None, "scale the motion to this Arias intensity (one factor for all components)", gt=0)
     sa: Acceleration | None = key(None, "scale the motion to this pseudo-acceleration at `sa_period` (one factor for all components)", gt=0)
-    sa_period: Time | None = key(None, "period for sa", gt=0)
-    sa_damping: float = key(0.05, "damping ratio for sa", ge=0, le=0.5)
+    sa_period: Time | None = key(None, "period at which `sa` is given", gt=0)
+    sa_damping: float = key(0.05, "damping ratio for which `sa` is given", ge=0, le=0.5)
 
     @model_validator(mode="after")
     def _one_target(self) -> "Treated":
@@ -183,15 +183,15 @@ class Selection(TargetSpectrum):
 
 
 class Suite(Treated):
-    """Several records: a list, a pattern or a folder inside the deck's folder, or a table for each with its components.
+    """Several records: a list, a pattern or a folder inside the folder of the deck, or a table for each record.
 
-    Single runs take one of them.
+    A table gives the components of a record. Single runs use one of the records.
     """
 
     kind: Literal["suite"]
     starter: ClassVar = {"files": '["extrados:el-centro-1940"]'}
-    files: list[str] | None = key(None, "the records", min_length=1, max_length=2000)
-    pattern: str | None = key(None, "such as `records/*.AT2`", min_length=1, max_length=1024)
+    files: list[str] | None = key(None, "files of the records", min_length=1, max_length=2000)
+    pattern: str | None = key(None, "pattern of the names of the files, such as `records/*.AT2`", min_length=1, max_length=1024)
     folder: str | None = key(None, "folder whose records form the suite", min_length=1, max_length=1024)
     records: list[Components] | None = key(
         None, "records with several components or channels, [[motion.records]]", min_length=1, max_length=2000
@@ -287,7 +287,7 @@ class Generated(Motion):
 
 
 class Compatible(TargetSpectrum, Motion):
-    """Random earthquakes whose response spectrum matches that of a code or table, baseline corrected."""
+    """Random earthquakes whose response spectrum matches the spectrum of a code or of a table, with baseline correction."""
 
     kind: Literal["compatible"]
     starter: ClassVar = {"code": '"EN1998-1"', "ground": '"B"', "acceleration": '"0.2 g"', "tolerance": "0.15"}
@@ -299,9 +299,9 @@ class Compatible(TargetSpectrum, Motion):
     )
     duration: Time = key(20.0, "length of the motion", ge=2, le=200)
     envelope: Literal["trapezoid", "jennings", "saragoni-hart"] = key("trapezoid", "envelope: how the amplitude varies over time")
-    rise: Time | None = key(None, "time to full strength", gt=0)
-    decay: Time | None = key(None, "see `generated`", gt=0)
-    seed: int = key(1, "one seed gives one set", ge=-(2**62), le=2**62)
+    rise: Time | None = key(None, "time until the full amplitude", gt=0)
+    decay: Time | None = key(None, "duration of the decay of the envelope, as for `generated` motions", gt=0)
+    seed: int = key(1, "seed of the random numbers: the same seed gives the same set", ge=-(2**62), le=2**62)
     member: int = key(1, "number (from 1), in the set, of the motion that a single run uses", ge=1, le=2**31)
     time_step: Time = key(0.01, "sampling step", ge=1e-3, le=0.05)
 

@@ -70,7 +70,7 @@ LISTS = ("accelerations", "amplifications", "corner_periods", "short_acceleratio
 
 
 class Code(Table):
-    """The code of the report: one jurisdiction, whose rules alone decide. Without this table the rules of NTC 2018 are applied."""
+    """The code for the checks: the rules of one jurisdiction give the verdict. Without this table, the rules of NTC 2018 are applied."""
 
     jurisdiction: Jurisdiction = key(
         about="code of the checks: NTC (Italy), EN1998 (Eurocode 8), ASCE41 (United States), NZSEE (New "

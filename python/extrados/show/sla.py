@@ -98,7 +98,8 @@ def _all_stages(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         title = style.save(fig, folder, f"{name}-stages")
     return title, (
         "Load over displacement in all stages. Thin lines: every event in equilibrium. Thick lines: envelopes. A dot marks the start "
-        "of a stage. A stage that begins where an earlier one ended shares its panel; signs are those of the first stage of the panel."
+        "of a stage. A stage that begins where an earlier stage ended is drawn in the panel of that stage. Signs refer to the first stage "
+        "of a panel."
     )
 
 

@@ -278,7 +278,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.legend(loc="best")
         points = f"Points: share of the motions that cause collapse at each intensity, with {100 * r.confidence:g} % Wilson intervals."
         if isinstance(r, DemFragility) and any(r.censored):
-            points += " Wide bars: range of this share from all censored runs standing to all collapsing."
+            points += " Wide bars: this share if no censored run collapses, and if all of them collapse."
         curves = (
             "Solid curve: fitted probability of collapse at an intensity, with its bootstrap band. Dash-dotted curve: fitted probability "
             "that a motion causes collapse at this intensity or a lower one (interval-censored likelihood)."

@@ -18,10 +18,10 @@ KEPT = 0.25
 
 
 class Assess(Analysis):
-    """Every strategy that applies to the building under the hazard of [motion], compared, with the reasons why they differ.
+    """Assessment of the building by every strategy that applies, and the reasons why their results differ.
 
-    The hazard is the deck's [motion]: a record, a suite, motions `compatible` with the spectrum of a code, earthquakes
-    `generated` for an intensity, or a pulse.
+    The hazard is the [motion] of the deck: a record, a suite, motions `compatible` with the spectrum of a code, earthquakes `generated`
+    for an intensity, or a pulse.
     """
 
     kind: Literal["assess"]
@@ -41,13 +41,18 @@ class Assess(Analysis):
     )
     strategies: list[Strategy] = key(
         list(STRATEGIES),
-        "strategies to run, if they apply; `probability` means `fragility` with uncertain sizes, or with the motions of "
-        "a set; `push-x` and `push-y` mean `pushover`, `frame` means `frame-pushover` of a building in plan",
+        "strategies that are run if they apply. `probability`: `fragility` with uncertain sizes, or with the motions of a set; "
+        "`push-x`, `push-y`: `pushover` in x or y; `frame`: `frame-pushover` of a building in plan",
         min_length=1,
         max_length=len(STRATEGIES),
     )
-    thin: float = key(1.5, "critical scale factors from 1/`thin` to `thin` count as close to 1 and cause additional runs", gt=1, le=10)
-    apart: float = key(1.5, "ratio of two critical scale factors from which they are reported as different, with the reasons", gt=1, le=10)
+    thin: float = key(
+        1.5,
+        "limit of the range from 1/`thin` to `thin`: a critical scale factor in this range counts as close to 1 and causes additional runs",
+        gt=1,
+        le=10,
+    )
+    apart: float = key(1.5, "least ratio of two critical scale factors that is reported as a difference, with the reasons", gt=1, le=10)
     acceptable_probability: float = key(
         0.05,
         'probability of collapse up to which `probability` gives the verdict "stands"; above 0.5 the verdict is "collapses"',
@@ -62,7 +67,9 @@ class Assess(Analysis):
         None, "number of motions of a set; default: the whole suite, 40 generated motions or 10 compatible motions"
     )
     spectrum: CodeSpectrum | None = key(
-        None, "elastic spectrum for `code-checks`; default: that of a `compatible` motion, otherwise the peak of the motion"
+        None,
+        "elastic spectrum for `code-checks`; default: the spectrum of a `compatible` motion; for other motions, the peak acceleration "
+        "of the motion",
     )
     sensitivity: bool = key(
         False,
@@ -71,13 +78,12 @@ class Assess(Analysis):
         "This takes 25 % of the time budget",
     )
     vary: dict[str, Annotated[float, Field(gt=0, lt=1)]] | None = key(
-        None, 'keys to vary instead of the default ones, each with its relative change: { "structure.thickness" = 0.1 }'
+        None, 'keys that are varied instead of the default keys, each with its relative change: { "structure.thickness" = 0.1 }'
     )
     advise: bool = key(
         True,
-        'if at least one strategy does not give the verdict "stands": also find the least tie force and '
-        "the least thickness with which the building carries the peak acceleration of the hazard as a "
-        "sustained load",
+        "also find the least tie force and the least thickness with which the building carries the peak acceleration of the hazard as "
+        'a sustained load. Only if at least one strategy does not give the verdict "stands"',
     )
     options: dict[Strategy, dict[str, Any]] = key(
         {},

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class CodeChecks(BuildingAnalysis):
-    """The rules of the code of the deck for a rocking body, or for a wall as a pier, beside the dynamics; each with its source."""
+    """Checks by the code of the deck: a rigid body that rocks, or a wall as a pier. Each rule has its source."""
 
     kind: Literal["code-checks"]
     uses: ClassVar = ("material.density", "material.compressive_strength", "joints.friction", "joints.cohesion", "joints.restitution")
@@ -22,15 +22,15 @@ class CodeChecks(BuildingAnalysis):
     view: ClassVar = ""
     structures: ClassVar = ("block", "column", "panel", "brickwork")
     spectrum: CodeSpectrum | None = key(
-        None, "elastic spectrum of the code at the site, which gives the demand; default: that of a `compatible` motion"
+        None, "elastic spectrum of the code at the site, for the demand; default: the spectrum of a `compatible` motion"
     )
     peak_acceleration: Acceleration | None = key(None, "demand a_g S, as an acceleration; default: from the spectrum", gt=0)
-    peak_velocity: Velocity | None = key(None, "demand of Ishiyama's rule", gt=0)
+    peak_velocity: Velocity | None = key(None, "peak ground velocity: demand for the rule of Ishiyama", gt=0)
     motion_spectrum: bool = key(
         False, "if no code spectrum is given: use the response spectrum and the peak velocity of the motion in the deck"
     )
     pulse_period: Time | None = key(
-        None, "period of the sine for the formula of Housner, which considers one half cycle; adds the check by this formula", gt=0
+        None, "period of a sine pulse. If given, the formula of Housner for one half cycle of this sine is also checked", gt=0
     )
     behaviour_factor: float | None = key(
         None,
@@ -40,7 +40,9 @@ class CodeChecks(BuildingAnalysis):
         le=6,
         source="Circ. 7/2019, C8.7.1.2.1.7",
     )
-    confidence_factor: float | None = key(None, "FC; default that of [code]", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV")
+    confidence_factor: float | None = key(
+        None, "confidence factor FC; default: value of [code]", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV"
+    )
     partial_factor: float | None = key(
         None,
         "partial factor gamma_M for a pier by NTC; default: 2 for a linear check with q, otherwise 1",
@@ -48,16 +50,20 @@ class CodeChecks(BuildingAnalysis):
         le=3,
         source="NTC 2018 7.8.1.1",
     )
-    axial_load: Force | None = key(None, "vertical load on top of the wall; adds the pier rules", ge=0)
+    axial_load: Force | None = key(None, "vertical load on top of the wall. If given, the rules for piers are also checked", ge=0)
     thickness: Length | None = key(None, "thickness of the pier; default: the depth of the block", gt=0)
     sliding_friction: float = key(
         0.4, "coefficient of friction for sliding along a bed joint, as given by the code", gt=0, le=2, source="NTC 2018"
     )
     diagonal_strength: Stress | None = key(
-        None, "tau_0, shear strength of the masonry without compression; adds the check of diagonal cracking", gt=0
+        None, "tau_0: shear strength of the masonry without compression. If given, diagonal cracking is also checked", gt=0
     )
     interlocking_ratio: float | None = key(
-        None, "phi = h_b/l of a pier of regular masonry; adds the check of stepped cracking", gt=0, le=5, source="Circ. 7/2019 [C8.7.1.17]"
+        None,
+        "phi = h_b/l of a pier of regular masonry: height of a unit / overlap. If given, stepped cracking is also checked",
+        gt=0,
+        le=5,
+        source="Circ. 7/2019 [C8.7.1.17]",
     )
     unit_strength: Stress | None = key(None, "f_b, compressive strength of the units, which limits the shear strength of the pier", gt=0)
     fixity: Literal["cantilever", "double"] = key("cantilever", "rotation of the top of the pier. cantilever: free; double: fixed")
@@ -104,7 +110,7 @@ class Verification(Table):
         source="Circ. 7/2019 C7.3.4.2: first mode",
     )
     spectrum: CodeSpectrum | None = key(
-        None, "elastic spectrum of the limit state that gives the verdict; default: that of [code], or of a `compatible` motion"
+        None, "elastic spectrum of the limit state that gives the verdict; default: the spectrum of [code] or of a `compatible` motion"
     )
     motion_spectrum: bool = key(False, "if no code spectrum is given: use the response spectrum of the motion in the deck")
 
@@ -129,7 +135,7 @@ class Floor(Table):
     load: Force = key(0.0, "weight of a load that rests on the wall (P)", ge=0, source="Circ. 7/2019 [C8.7.1.1]")
     pushing: Force = key(
         0.0,
-        "weight of a load that pushes the wall by its mass but does not rest on it (Q): it drives the mechanism and does not stabilise it",
+        "weight Q of a load that does not rest on the wall: its mass pushes the wall, and its weight does not stabilise the wall",
         ge=0,
         source="Circ. 7/2019 [C8.7.1.1]",
     )
@@ -149,8 +155,8 @@ class Wing(Table):
     """A further part of a facade that overturns with it: a wing of another height, or an upper wall of another thickness."""
 
     height: Length = key(about="height of the top of this part above the foot of the wall", gt=0)
-    thickness: Length = key(about="its thickness", gt=0)
-    width: Length = key(about="its length", gt=0)
+    thickness: Length = key(about="thickness of this part", gt=0)
+    width: Length = key(about="length of this part", gt=0)
     foot: Length = key(0.0, "height of the foot of this part above the foot of the wall", ge=0)
     setback: Length = key(0.0, "distance by which the outer face of this part is set back from the outer face of the wall", ge=0)
 
@@ -165,7 +171,7 @@ class Mode(Table):
     """A mode of the building that carries the part, for the floor spectrum."""
 
     period: Time = key(about="period T_k", gt=0)
-    participation: float = key(about="modal participation factor gamma_k")
+    participation: float = key(about="modal participation factor gamma_k of the mode")
     shape: float = key(about="psi_k(z): mode shape at the height of the part")
     damping: float = key(0.05, "damping ratio xi_k", gt=0, le=0.3)
 
@@ -173,9 +179,9 @@ class Mode(Table):
 class SideWalls(Table):
     """Walls at right angles of which wedges go with the facade."""
 
-    thickness: Length = key(about="of each", gt=0)
+    thickness: Length = key(about="thickness of each side wall", gt=0)
     crack_angle: Angle = key(about="angle of the crack from the vertical", gt=0, lt=80)
-    count: int = key(2, "how many", ge=1, le=4)
+    count: int = key(2, "number of side walls", ge=1, le=4)
 
 
 class Interlocking(Table):
@@ -217,9 +223,9 @@ class LocalMechanism(BuildingAnalysis):
     hinge_height: Length = key(0.0, "height of the hinge: the crack about which the wall rotates", ge=0)
     crack_angle: Angle | None = key(None, "for a corner: angle of the cracks in both walls from the vertical", gt=0, lt=80)
     floors: list[Floor] = key([], "floors, roofs and vaults that load the part", max_length=50)
-    ties: list[WallTie] = key([], "ties that hold it", max_length=50)
+    ties: list[WallTie] = key([], "ties that restrain the part", max_length=50)
     side_walls: SideWalls | None = key(None, "wedges of the side walls that move with the part")
-    wings: list[Wing] = key([], "further parts of a facade that overturn with it", max_length=20)
+    wings: list[Wing] = key([], "further parts that overturn with a facade", max_length=20)
     abutment_force: Force | None = key(
         None,
         "for horizontal bending: force H that each side wall (or its tie) resists against the thrust of the strip. Default: the side "
@@ -230,7 +236,7 @@ class LocalMechanism(BuildingAnalysis):
         None, "interlocking of the units with the side walls, which restrains a facade by friction", source="Circ. 7/2019 [C8.7.1.2]"
     )
     spectrum: CodeSpectrum | None = key(
-        None, "elastic spectrum of the site; default: that of a `compatible` motion", source="EN 1998-1 3.2.2; NTC 2018 3.2.3"
+        None, "elastic spectrum of the site; default: the spectrum of a `compatible` motion", source="EN 1998-1 3.2.2; NTC 2018 3.2.3"
     )
     peak_acceleration: Acceleration | None = key(None, "demand a_g S, as an acceleration; default: from the spectrum", gt=0)
     collapse_spectrum: CodeSpectrum | None = key(
@@ -282,9 +288,11 @@ class LocalMechanism(BuildingAnalysis):
         source="Circ. 7/2019 [C8.7.1.7]",
     )
     one_second_acceleration: Acceleration | None = key(
-        None, "spectral acceleration S_X1; adds the slenderness limits of ASCE 41 for walls anchored at their top", gt=0
+        None,
+        "spectral acceleration S_X1. If given, the slenderness limits of ASCE 41 for walls anchored at their top are also checked",
+        gt=0,
     )
-    storey: Literal["one-story", "first", "top", "other"] = key("one-story", "storey of the wall, for ASCE 41")
+    storey: Literal["one-story", "first", "top", "other"] = key("one-story", "position of the wall in the building, for ASCE 41")
 
     @model_validator(mode="after")
     def _one_building(self) -> "LocalMechanism":

@@ -153,8 +153,8 @@ class SpatialDem(DemTable):
 
     crushing: bool = key(
         False,
-        "include crushing of the corners of joints, which moves hinges inward: the pressure is at most the compressive strength of the "
-        "material. For springs, without mortar",
+        "crushing at the corners of joints: the pressure is at most the compressive strength of the material, which moves hinges "
+        "inward. Only for springs, without mortar",
     )
 
     @property
@@ -179,10 +179,10 @@ class Water(Table):
     side: Literal["left", "right"] = key("left", "side of the structure on which the water is; left: towards -x")
     uplift: Literal["none", "linear", "full"] = key(
         "full",
-        "pressure in joints below the water surface. full: that of the water at the same height; linear: decreases along horizontal lines "
-        "from this pressure at the wet face to zero at the other face of the section; none: zero",
+        "pressure in joints below the water surface. full: pressure of the water at the same height; linear: this pressure at the wet "
+        "face, decreasing along horizontal lines to zero at the other face of the section; none: zero",
     )
-    density: Density = key(1000.0, "of the water", gt=0)
+    density: Density = key(1000.0, "density of the water", gt=0)
 
 
 class Dem(SpatialDem, Animated):
@@ -213,13 +213,13 @@ class Dem(SpatialDem, Animated):
         gt=0,
     )
     domain: float = key(
-        10.0, "the run ends if a block is farther from the structure than this multiple of the size of the structure", gt=1, le=1000
+        10.0, "distance of a block from the structure at which the run ends, divided by the size of the structure", gt=1, le=1000
     )
     stop_at_collapse: bool = key(True, "end the run when a block has moved by the collapse displacement")
     perturbed: bool = key(
         True,
-        "repeat the run with the motion times 1 + 1e-6, to find whether the response is chaotic. This "
-        "takes twice the time; if the perturbation grows a thousandfold, ten times the time",
+        "repeat the run with the motion times 1 + 1e-6, to find whether the response is chaotic. The analysis then takes twice the "
+        "time, or ten times the time if the perturbation grows a thousandfold",
     )
     thrust: bool = key(
         False,
@@ -227,21 +227,23 @@ class Dem(SpatialDem, Animated):
     )
     water: Water | None = key(
         None,
-        "water on one side of a plane section. Its forces are those on the structure at rest: their directions and values do not change as "
-        "blocks move",
+        "water on one side of a plane section. Its forces are calculated for the structure at rest; their directions and values do not "
+        "change as blocks move",
     )
     track: list[str] = key([], "names of the blocks whose rotation is recorded; default: all, at most 24", max_length=200)
     snapshot_times: list[Time] = key([], "times at which the structure is drawn; default: six characteristic times", max_length=24)
     vtk: bool = key(False, "write VTU files and a PVD collection")
-    vary_damping: list[Positive] = key([], "repeat the run with beta multiplied by each of these factors", max_length=50)
+    vary_damping: list[Positive] = key(
+        [], "repeat the run with beta (stiffness-proportional damping) multiplied by each of these factors", max_length=50
+    )
     vary_stiffness: list[Positive] = key([], "repeat the run with joint stiffnesses multiplied by each of these factors", max_length=50)
     vary_friction: list[Positive] = key(
         [], "repeat the run with each of these coefficients of friction at all joints, including those of [[joints.types]]", max_length=50
     )
     find_friction: bool = key(False, "also find the least coefficient of friction, equal at all joints, at which no joint slides")
     slip: Length = key(1e-4, "slip that counts as sliding, in the search for the least coefficient of friction", gt=0)
-    tilt_limit: Acceleration = key(2.0 * GRAVITY, "cap of the tilt test", gt=0)
-    tilt_accuracy: Gravities = key(1e-3, "accuracy of the tilt test", ge=1e-6, le=0.1)
+    tilt_limit: Acceleration = key(2.0 * GRAVITY, "greatest acceleration in the tilt test", gt=0)
+    tilt_accuracy: Gravities = key(1e-3, "accuracy of the collapse acceleration in the tilt test", ge=1e-6, le=0.1)
 
     @model_validator(mode="after")
     def _places_of_forces(self) -> "Dem":
@@ -256,7 +258,7 @@ class Dem(SpatialDem, Animated):
 
 
 class DemDomain(SpatialDem):
-    """Which pulses bring the structure down, by discrete elements, beside the four-hinge curves where they exist."""
+    """Discrete elements: pulses that cause collapse. Failure curves of the four-hinge mechanism are compared where they exist."""
 
     kind: Literal["dem-domain"]
     starter_structure: ClassVar = "block"
@@ -266,7 +268,7 @@ class DemDomain(SpatialDem):
         about="amplitudes of the pulses; at each, the shortest duration that causes collapse is searched", min_length=1, max_length=200
     )
     durations: list[Time] = key(about="durations that are tried first, in increasing order", min_length=2, max_length=500)
-    accuracy: Time = key(0.005, "of the failing durations", ge=1e-6)
+    accuracy: Time = key(0.005, "accuracy of the shortest durations that cause collapse", ge=1e-6)
     settle: Time | None = key(None, "time after the pulse in which the structure must come to rest or collapse", gt=0)
     collapse_displacement: Length | None = key(
         None,
@@ -282,10 +284,12 @@ class DemDomain(SpatialDem):
     )
     cross_check: bool = key(
         False,
-        "also calculate the failure curve with the other solver, and the share of the cells (amplitudes "
-        "and durations) in which both solvers give the same outcome",
+        "also calculate the failure curve with the other solver, and the share of cells (pairs of amplitude and duration) with the "
+        "same outcome",
     )
-    vary_damping: list[Positive] = key([], "also calculate failure curves with beta multiplied by each of these factors", max_length=20)
+    vary_damping: list[Positive] = key(
+        [], "also calculate failure curves with beta (stiffness-proportional damping) multiplied by each of these factors", max_length=20
+    )
     vary_stiffness: list[Positive] = key(
         [], "also calculate failure curves with joint stiffnesses multiplied by each of these factors", max_length=20
     )
@@ -311,7 +315,7 @@ class DemDomain(SpatialDem):
 
 
 class DemFragility(SpatialDem):
-    """Discrete elements under many motions: probability of collapse at levels of an intensity, or of the structure in several sizes."""
+    """Discrete elements under many motions: probability of collapse at levels of an intensity, or for several sizes of the structure."""
 
     kind: Literal["dem-fragility"]
     needs_motion: ClassVar = True
@@ -320,7 +324,10 @@ class DemFragility(SpatialDem):
     starter: ClassVar = {"count": "4", "levels": '["0.3 g", "0.6 g"]'}
     count: int | None = key(None, "number of motions; default: 100, or the whole set", ge=1, le=1_000_000)
     seed: int | None = key(
-        None, "seed of the random numbers, for the uncertain values and for a generated set, whose own seed it replaces", ge=0, le=2**62
+        None,
+        "seed of the random numbers, for the uncertain values and for a generated set of motions; replaces the seed in [motion]",
+        ge=0,
+        le=2**62,
     )
     intensity: Literal["pga", "sa", "arias", "scale", "size"] = key(
         "pga",
@@ -335,9 +342,9 @@ class DemFragility(SpatialDem):
     hazard: Hazard | None = key(None, "hazard curve of the site, from which the annual rate of collapse is calculated")
     uncertain: dict[str, float] = key(
         {},
-        "coefficients of variation of any length of [structure]; of the `friction` of all joints together; of `stiffness` and `damping` "
-        "of springs; of the `density` of each block. `imperfection`, for plane sections: deviation of corners and joints of blocks, "
-        "divided by the shortest joint. Sampled by a Sobol sequence, one building for each motion",
+        "coefficients of variation of any length of [structure]; of the `friction` of all joints together; of `stiffness` and "
+        "`damping` of springs; of the `density` of each block. `imperfection`, for plane sections: deviation of corners and joints of "
+        "blocks, divided by the shortest joint. The values are sampled by a Sobol sequence, with one building for each motion",
     )
     settle: Time | None = key(
         None, "time after the motion in which the blocks must come to rest or collapse; default: 15 times the root of size / g", ge=0
@@ -349,7 +356,7 @@ class DemFragility(SpatialDem):
         "size of the structure",
         gt=0,
     )
-    confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
+    confidence: float = key(0.95, "confidence level of all intervals", gt=0, lt=1)
     bootstrap: int = key(500, "number of bootstrap samples for the band of the fitted curve", ge=0, le=100_000)
 
     @model_validator(mode="before")

@@ -32,7 +32,7 @@ class FrameAnalysis(BuildingAnalysis):
     structures: ClassVar = tuple(kind for kind, parts in kinds.STRUCTURES.items() if isinstance(parts.frame, str))
     uses: ClassVar[tuple[str, ...]] = (*ELASTIC, *STRENGTHS)
     starter_structure: ClassVar = "building"
-    frame: FrameOptions = key(FrameOptions(), "piers and spandrels, [analysis.frame]")
+    frame: FrameOptions = key(FrameOptions(), "properties of piers and spandrels, [analysis.frame]")
 
     def rests_on(self, building: "Building") -> dict[str, str | None]:
         """A cohesion that the key of the frame replaces is not among them."""
@@ -52,31 +52,31 @@ class FrameAnalysis(BuildingAnalysis):
 
 
 class FrameModes(FrameAnalysis):
-    """Periods, shapes and participating masses of a building as a frame of macro-elements, under its weight."""
+    """Periods, mode shapes and participating masses of a building under its weight, as a frame of macro-elements."""
 
     kind: Literal["frame-modes"]
     uses: ClassVar = ELASTIC
-    modes: int = key(6, "how many modes", ge=1, le=100)
+    modes: int = key(6, "number of modes", ge=1, le=100)
 
 
 class Modes(BuildingAnalysis):
-    """Natural frequencies, shapes and participating masses of an arch, a vault or other plane blocks, all joints closed."""
+    """Natural frequencies, mode shapes and participating masses of an arch, a vault or other plane blocks with closed joints."""
 
     kind: Literal["modes"]
     view: ClassVar = "blocks"
     uses: ClassVar = (*ELASTIC, "joints.normal_stiffness", "joints.shear_stiffness", "joints.shear_ratio")
     starter_structure: ClassVar = "arch"
-    modes: int = key(6, "how many modes", ge=1, le=100)
+    modes: int = key(6, "number of modes", ge=1, le=100)
 
 
 class FramePushover(FrameAnalysis):
-    """Pushover of a building as a frame of macro-elements: both directions and senses, several patterns and eccentricities."""
+    """Pushover of a building as a frame of macro-elements, in several directions and senses, with several patterns and eccentricities."""
 
     kind: Literal["frame-pushover"]
     directions: list[Annotated[Angle, Field(ge=-360, le=360)]] = key(
         [0.0, 90.0], "directions of the load in plan, counter-clockwise from x", min_length=1, max_length=8
     )
-    senses: list[Literal["+", "-"]] = key(["+", "-"], "senses of each direction", min_length=1, max_length=2)
+    senses: list[Literal["+", "-"]] = key(["+", "-"], "senses of the load in each direction", min_length=1, max_length=2)
     patterns: list[Literal["uniform", "static", "modal"]] = key(
         ["uniform", "static"],
         "patterns of the horizontal forces. uniform: in proportion to the masses; static: in proportion to the masses times their "
@@ -114,7 +114,7 @@ class FramePushover(FrameAnalysis):
     steps: int = key(200, "number of steps up to the target; a step is divided if necessary", ge=10, le=10_000)
     drop: float = key(
         0.5,
-        "the run ends when the base shear drops below this share of its greatest value; 0.8 means the 20 % decrease of codes",
+        "share of the greatest base shear: the run ends when the base shear drops below this share; 0.8 is the 20 % decrease of codes",
         ge=0,
         le=0.95,
     )
@@ -145,7 +145,7 @@ class FrameMotion(FrameAnalysis):
 
 
 class FrameHistory(FrameMotion):
-    """Motion of a building as a frame of macro-elements under a ground acceleration, by Newmark's method."""
+    """Response of a building under a ground motion, as a frame of macro-elements, by Newmark's method."""
 
     kind: Literal["frame-history"]
     starter_motion: ClassVar = "sine-pulse"
@@ -171,7 +171,10 @@ class FrameFragility(FrameMotion):
     )
     count: int | None = key(None, "number of motions; default 100, or the whole set", ge=2, le=1_000_000)
     seed: int | None = key(
-        None, "seed of the random numbers for the uncertain values. It also replaces the seed of a generated set of motions", ge=0, le=2**62
+        None,
+        "seed of the random numbers, for the uncertain values and for a generated set of motions; replaces the seed in [motion]",
+        ge=0,
+        le=2**62,
     )
     intensity: Literal["pga", "sa"] = key("pga", "intensity measure of the motions. pga: PGA [g]; sa: SA(`sa_period`) [g]")
     sa_period: Time | None = key(None, "period of SA", gt=0)
@@ -186,11 +189,11 @@ class FrameFragility(FrameMotion):
         "coefficients of variation of "
         + ", ".join(f"`{name}`" for name in UNCERTAIN)
         + (
-            "; lognormal factors with a mean of 1, one for the whole building, drawn by a Sobol sequence; "
+            ". Each factor is lognormal with a mean of 1, applies to the whole building and is sampled by a Sobol sequence; "
             "`strength` multiplies all strengths of the masonry"
         ),
     )
-    confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
+    confidence: float = key(0.95, "confidence level of all intervals", gt=0, lt=1)
     bootstrap: int = key(500, "number of bootstrap samples for the confidence intervals of the curves", ge=0, le=100_000)
 
     @model_validator(mode="after")

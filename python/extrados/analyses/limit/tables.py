@@ -16,8 +16,8 @@ class AppliedLoad(Table):
     """A load on the structure: at a place, or spread from x to x_end; upright, oblique or horizontal; it may sway."""
 
     x: Length = key(
-        about="x of the load. The load acts on the highest block there, or on the block at `y`. On the fill of "
-        "a bridge, a load without `y` is spread"
+        about="x of the load. The load acts on the highest block at this x, or on the block at `y`. On the fill of a bridge, a load without "
+        "`y` is spread by the fill"
     )
     force: Force = key(0.0, "vertical force, downward; for a distributed load, its total")
     horizontal: Force = key(0.0, "horizontal force, towards +x; for a distributed load, its total")
@@ -26,7 +26,7 @@ class AppliedLoad(Table):
         None, "height at which the load acts; default: the surface of the highest block. In space: the second coordinate in plan"
     )
     z: Length | None = key(None, "in space: height at which the load acts; default: the surface of the highest block")
-    sways: bool = key(False, "whether the weight of the load is accelerated with the ground, like that of a floor or a roof")
+    sways: bool = key(False, "whether the weight of the load is accelerated with the ground, like the weight of a floor or a roof")
 
     @model_validator(mode="after")
     def _acts(self) -> "AppliedLoad":
@@ -67,7 +67,8 @@ class SpatialLimit(LimitAnalysisTable):
 
     solid: ClassVar = True
     fracture: bool = key(
-        False, "also calculate with a crack in the leeward buttress; figures show the uncracked and the cracked structure side by side"
+        False,
+        "repeat the calculation with a crack in the leeward buttress; figures show the uncracked and the cracked structure side by side",
     )
     direction: Angle | None = key(
         None,
@@ -83,7 +84,8 @@ class Tilt(SpatialLimit, Animated):
 
     kind: Literal["tilt"]
     fracture: bool = key(
-        False, "also calculate with a crack in the leeward buttress; figures show the uncracked and the cracked structure side by side"
+        False,
+        "repeat the calculation with a crack in the leeward buttress; figures show the uncracked and the cracked structure side by side",
     )
     rose: int | None = key(
         None,
@@ -94,9 +96,8 @@ class Tilt(SpatialLimit, Animated):
     )
     mortar: Literal["neglected", "ductile"] = key(
         "neglected",
-        'cohesion and tension of the joints. "neglected": dry joints; "ductile", for solids: the joints '
-        "keep both until collapse. Real mortar is brittle, so this result is an upper bound, and the "
-        "result for dry joints is given too",
+        'cohesion and tension of the joints. "neglected": dry joints; "ductile", for solids: the joints keep cohesion and tension '
+        'until collapse. Real mortar is brittle: "ductile" gives an upper bound, and the result for dry joints is also given',
     )
     face_law: bool | None = key(
         None,
@@ -105,7 +106,9 @@ class Tilt(SpatialLimit, Animated):
         source="after Orduna and Lourenco 2005",
     )
     block_size: bool | None = key(
-        None, "for solids: also calculate the capacity with blocks half as long (in each direction separately), and with each other bond"
+        None,
+        "for solids: also calculate the capacity with blocks of half the length (in each direction separately), and with each of the "
+        "other bonds",
     )
     pyramids: int | None = key(
         None,
@@ -124,7 +127,7 @@ class Tilt(SpatialLimit, Animated):
 class Section(Table):
     """A section of blocks in space whose thrust is sought: a plane cut, or named contacts."""
 
-    name: str = key(about="its name", max_length=80)
+    name: str = key(about="name of the section", max_length=80)
     x: Length | None = key(
         None, "x of a vertical cut. Its section is all contacts between blocks with centroids on different sides of the cut"
     )
@@ -150,7 +153,7 @@ class Section(Table):
 
 
 class Thrust(SpatialLimit):
-    """Thrust lines at a given horizontal acceleration: least, greatest and most central thrust, safety, reactions."""
+    """Thrust lines at a given horizontal acceleration: minimum, maximum and most central thrust, geometric safety factor, reactions."""
 
     kind: Literal["thrust"]
     gamma: Gravities = key(
@@ -168,7 +171,7 @@ class Thrust(SpatialLimit):
 
 
 class ThrustNetwork(BuildingAnalysis):
-    """Thrust networks in a vault or dome on a form diagram in plan: least and greatest thrust, safety, horizontal load."""
+    """Thrust networks in a vault or dome on a form diagram in plan: minimum and maximum thrust, safety, horizontal load."""
 
     kind: Literal["thrust-network"]
     structures: ClassVar = ("arch", "pointed-arch", "elliptical-arch", "blocks", "dome", "cross-vault")
@@ -188,7 +191,7 @@ class ThrustNetwork(BuildingAnalysis):
 
 
 class Sweep(SpatialLimit):
-    """One deck key of the structure varied: capacity, mechanism and its changes, the optimum (Figs 3-4, 3-6a, 3-7b)."""
+    """Variation of one key of the deck: capacity, mechanism and its changes, optimum (thesis Figs 3-4, 3-6a, 3-7b)."""
 
     kind: Literal["sweep"]
     starter: ClassVar = {"vary": '"thickness"', "start": "0.4", "stop": "1.2"}
@@ -199,10 +202,10 @@ class Sweep(SpatialLimit):
         "`direction`, the direction of the load"
     )
     start: float | str | None = key(None, 'first value of the key in `vary`, in its unit, or as text such as "40 cm"')
-    stop: float | str | None = key(None, "last value")
+    stop: float | str | None = key(None, "last value of the key in `vary`")
     count: int = key(41, "number of values from start to stop", ge=2, le=2000)
     values: list[float | str] | None = key(None, "values of the key in `vary`; replaces `start` and `stop`", min_length=2, max_length=2000)
-    fracture: bool = key(False, "also calculate with a crack in the leeward buttress")
+    fracture: bool = key(False, "repeat the calculation with a crack in the leeward buttress")
     buttress_alone: bool = key(False, "also calculate the leeward buttress alone, as a separate structure", source="thesis Fig. 3-4b")
     locate: bool | None = key(
         None,
@@ -218,7 +221,7 @@ class Sweep(SpatialLimit):
 
 
 class Survey(SpatialLimit):
-    """Many sections from a CSV table, one line of results each."""
+    """Limit analysis of many sections from a CSV table, with one row of results for each section."""
 
     kind: Literal["survey"]
     starter: ClassVar = {"file": '"extrados:example-sections"'}
@@ -226,11 +229,11 @@ class Survey(SpatialLimit):
         about="CSV file in the folder of the deck. Its header contains keys of [structure] (lengths in m); "
         "each row gives one section, or one file of solids"
     )
-    fracture: bool = key(False, "also calculate with a crack in the leeward buttress")
+    fracture: bool = key(False, "repeat the calculation with a crack in the leeward buttress")
 
 
 class Imperfections(SpatialLimit):
-    """Random geometries of the same stones, each point within the deviation of the survey: a band on the capacity."""
+    """Capacity for random geometries of the same blocks. Each point lies within the deviation of the survey."""
 
     kind: Literal["imperfections"]
     starter: ClassVar = {"deviation": '"5 mm"'}
@@ -242,9 +245,9 @@ class Imperfections(SpatialLimit):
 
 
 class MovingSupports(BuildingAnalysis, Animated):
-    """Supports that give way: the joints that open in any structure; an arch through its three-hinge states to its fall.
+    """Movement of supports: joints that open in any structure. An arch is followed through its three-hinge states to collapse.
 
-    What gives way is said by [[initial.movements]]; without them it is the right support.
+    [[initial.movements]] gives the movements; without this table, the right support moves.
     """
 
     kind: Literal["supports"]
@@ -258,7 +261,7 @@ class MovingSupports(BuildingAnalysis, Animated):
     )
     movement: Length | None = key(
         None,
-        "size of the movement of the right support; not for an arch without ties, which is moved up to collapse. "
+        "size of the movement of the right support. Not used for an arch without ties: its support moves until the arch collapses. "
         "Default: 1/1000 of the width",
         gt=0,
     )
@@ -343,7 +346,7 @@ class Serviceability(Table):
 
 
 class MovingLoad(LimitAnalysisTable):
-    """A load, axles or a train that crosses: what of it brings the structure down, at every place."""
+    """Moving load (a load, axles or a train): the load that causes collapse, at every position."""
 
     kind: Literal["moving-load"]
     chain: str | None = key(
@@ -378,9 +381,9 @@ class MovingLoad(LimitAnalysisTable):
     )
     both_ways: bool = key(False, "whether the train also crosses in the opposite direction (towards -x, first axle in front)")
     count: int = key(
-        81, "number of positions while a load crosses the span; more, in proportion, for a train longer than the span", ge=3, le=2000
+        81, "number of positions of a load that crosses the span; increased in proportion for a train longer than the span", ge=3, le=2000
     )
-    places: list[Length] | None = key(None, "positions of the first axle; `count` is then not used", min_length=1, max_length=2000)
+    places: list[Length] | None = key(None, "positions of the first axle; these replace `count`", min_length=1, max_length=2000)
 
     @model_validator(mode="after")
     def _axles(self) -> "MovingLoad":

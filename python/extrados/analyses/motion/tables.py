@@ -12,7 +12,7 @@ INCH, POUND, GALLON = 0.0254, 0.45359237, 231.0 * 0.0254**3
 
 
 class MotionStudy(Analysis):
-    """What a ground motion is: peaks, intensity measures, spectra, pulses; figures, tables and export."""
+    """Properties of a ground motion: peaks, intensity measures, spectra, pulses; figures, tables and export."""
 
     kind: Literal["motion"]
     starter: ClassVar = {"count": "10"}
@@ -23,7 +23,7 @@ class MotionStudy(Analysis):
     longest: Time = key(10.0, "longest period of the spectra", le=50)
     periods: int = key(200, "number of periods of the spectra; the ratio of neighbouring periods is constant", ge=10, le=4000)
     impulses: int = key(3, "number of impulses that are fitted, the strongest first", ge=1, le=20, source="thesis 5.3.2")
-    max_period: Time = key(4.0, "longest impulse sought", gt=0)
+    max_period: Time = key(4.0, "longest period of the impulses searched", gt=0)
     export: list[Literal["AT2", "columns"]] = key(["AT2", "columns"], "formats in which the motion is written")
 
     @model_validator(mode="after")
@@ -43,20 +43,23 @@ class ShakeTable(Analysis):
 
     kind: Literal["shake-table"]
     needs_motion: ClassVar = False
-    stroke: Length = key(2.0 * INCH, "greatest displacement each way", gt=0, source="thesis C.2")
+    stroke: Length = key(2.0 * INCH, "greatest displacement of the table in each sense", gt=0, source="thesis C.2")
     flow: FlowRate = key(0.75 * GALLON / 60.0, "flow of the pump", gt=0, source="thesis C.2")
     piston_area: Area = key(0.40 * INCH**2, "area of the actuator's piston", gt=0, source="thesis C.2")
     max_force: Force = key(1100.0 * POUND * 9.80665, "greatest force of the actuator", gt=0, source="thesis C.2")
-    max_velocity: Velocity | None = key(None, "greatest velocity of a table without a pump; replaces `flow` and `area`", gt=0)
+    max_velocity: Velocity | None = key(None, "greatest velocity of a table without a pump; replaces `flow` and `piston_area`", gt=0)
     masses: list[Mass] = key(
-        [500.0 * POUND, 1000.0 * POUND], "moving masses, table included", min_length=1, max_length=10, source="thesis Fig. C-1"
+        [500.0 * POUND, 1000.0 * POUND],
+        "moving masses, each including the table; one capacity curve for each",
+        min_length=1,
+        max_length=10,
+        source="thesis Fig. C-1",
     )
     lowest: Frequency = key(0.1, "lowest frequency of the capacity curves", gt=0)
     highest: Frequency = key(20.0, "highest frequency of the capacity curves", le=200)
     low_cut: Frequency = key(0.1, "corner frequency of the high-pass filter that removes drift from the drive signal", gt=0)
     keep: Literal["amplitude", "time"] = key(
         "amplitude",
-        "how a motion that exceeds the limits is fitted: by compressing time (amplitude kept), or by scaling the "
-        "amplitude down (time kept)",
+        "method of fitting a motion that exceeds the limits. amplitude: the time is compressed; time: the amplitude is reduced",
         source="thesis 5.3.2",
     )

@@ -20,8 +20,8 @@ def hand_over_cells() -> Any:
     """Key of analyses that draw a map."""
     return key(
         100,
-        "cells of the map in which joints slide or hinges form outside the mechanism are continued with rigid contacts, if there are at "
-        "most this number of such cells; otherwise none is continued. 0: never",
+        "greatest number of cells of the map that are continued with rigid contacts. These are the cells in which joints slide or "
+        "hinges form outside the mechanism. If there are more of them, none is continued; 0: never",
         ge=0,
         le=1_000_000,
         source="Moreau 1988",
@@ -74,7 +74,7 @@ class RockingTable(BuildingAnalysis):
 
 
 class Rocking(RockingTable, Animated):
-    """Rocking of the single-degree-of-freedom mechanism, impacts and all, until collapse, rest or end time."""
+    """Rocking of the single-degree-of-freedom mechanism with impacts, until collapse, rest or the end time."""
 
     kind: Literal["rocking"]
     considers: ClassVar = (*HOLDS, *SOFT_BASE)
@@ -99,7 +99,7 @@ class Rocking(RockingTable, Animated):
 
 
 class FailureDomain(RockingTable):
-    """Which pulses bring an arch or a block down: Mode I (after an impact) and Mode II (without impact)."""
+    """Pulses that cause collapse of an arch or a block: Mode I (after an impact) and Mode II (without impact)."""
 
     kind: Literal["failure-domain"]
     considers: ClassVar = (*HOLDS, *SOFT_BASE)
@@ -113,7 +113,7 @@ class FailureDomain(RockingTable):
         None, "durations t_p or periods T_p; default: 40 values scaled to the structure", min_length=1, max_length=2000
     )
     amplitudes: int = key(40, "number of amplitudes of the map", ge=2, le=2000)
-    max_amplitude: Acceleration = key(1.5 * GRAVITY, "cap of the search", gt=0)
+    max_amplitude: Acceleration = key(1.5 * GRAVITY, "greatest amplitude of the search", gt=0)
     accuracy: float = key(1e-4, "accuracy of the failure curves, in g for amplitudes and in s for durations", ge=1e-9, le=0.1)
     hand_over_cells: int = hand_over_cells()
     at_amplitudes: list[Annotated[Acceleration, Field(gt=0)]] = key(
@@ -122,7 +122,7 @@ class FailureDomain(RockingTable):
 
 
 class FailureCurves(RockingTable):
-    """Failure curves of several structures, or of trains of sines, in one picture with the primary impulses of the motions."""
+    """Failure curves of several structures, or for trains of sines, in one figure with the primary impulses of the motions."""
 
     kind: Literal["failure-curves"]
     considers: ClassVar = (*HOLDS, *SOFT_BASE)
@@ -145,10 +145,10 @@ class FailureCurves(RockingTable):
     amplitudes: int = key(
         60, "number of amplitudes up to `max_amplitude` that are tried; the lowest one that causes collapse is then refined", ge=2, le=2000
     )
-    max_amplitude: Acceleration = key(1.5 * GRAVITY, "cap of the search", gt=0)
+    max_amplitude: Acceleration = key(1.5 * GRAVITY, "greatest amplitude of the search", gt=0)
     accuracy: float = key(1e-4, "accuracy of the failure curves, in g", ge=1e-9, le=0.1)
-    motions: int = key(12, "greatest number of motions of a suite or a generated set in the figure", ge=1, le=200)
-    max_period: Time = key(4.0, "longest primary impulse sought", gt=0)
+    motions: int = key(12, "greatest number of motions of a suite or a generated set that the figure shows", ge=1, le=200)
+    max_period: Time = key(4.0, "longest period of a primary impulse", gt=0)
     fits: bool = key(
         False,
         "for arches: also fit Eq. 5.5 of the thesis to each curve, and apply the criterion of Eq. 5.8 with Table 5.3",
@@ -173,14 +173,14 @@ class FailureCurves(RockingTable):
 
 
 class Assessment(RockingTable):
-    """Eq. 5.8: does the primary impulse of the motion fall above the failure curve of the arch?"""
+    """Comparison of the primary impulse of the motion with the failure curve of the arch (thesis Eq. 5.8)."""
 
     kind: Literal["assessment"]
     considers: ClassVar = ()
     needs_motion: ClassVar = True
     impulses: int = key(3, "number of impulses that are checked, the strongest first", ge=1, le=20)
     min_period: Time | None = key(None, "shortest period of the impulses searched; default: 4 time steps", gt=0)
-    max_period: Time = key(4.0, "longest impulse sought", gt=0)
+    max_period: Time = key(4.0, "longest period of the impulses searched", gt=0)
 
     @model_validator(mode="after")
     def _range(self) -> "Assessment":

@@ -21,8 +21,8 @@ class Drive(Table):
     """Nodes that are pushed by a given part of one displacement."""
 
     wall: str = key(about="name of the wall", min_length=1, max_length=40)
-    storey: int = key(about="on top of this storey", ge=1)
-    ratio: float = key(1.0, "its part of the displacement", gt=0, le=1e3)
+    storey: int = key(about="storey on whose top the displacement acts", ge=1)
+    ratio: float = key(1.0, "displacement of this place, as a multiple of the control displacement", gt=0, le=1e3)
 
 
 class Settlement(Table):
@@ -65,7 +65,7 @@ class PushStage(Table):
         [], "settlements of the ground in this stage; if none are given, the stage applies a horizontal load", max_length=100
     )
     direction: Angle | None = key(None, "direction of the load in plan; default: the direction of the analysis", ge=-360, le=360)
-    sense: Literal["+", "-"] = key("+", "of the push")
+    sense: Literal["+", "-"] = key("+", "sense of the load")
     base_shear: Force | None = key(
         None,
         "base shear at which the stage ends, in the direction of its load, including loads that remain "
@@ -91,9 +91,9 @@ class Variant(Table):
 
     name: str = key(about="name in figures and results", min_length=1, max_length=40)
     strength: float = key(1.0, "factor on the tensile strength of all materials", gt=0, le=100)
-    energy: float = key(1.0, "on their fracture energy", gt=0, le=1000)
-    young: float = key(1.0, "on their modulus of elasticity", gt=0, le=100)
-    density: float = key(1.0, "on their density", gt=0, le=100)
+    energy: float = key(1.0, "factor on the fracture energy of all materials", gt=0, le=1000)
+    young: float = key(1.0, "factor on the modulus of elasticity of all materials", gt=0, le=100)
+    density: float = key(1.0, "factor on the density of all materials", gt=0, le=100)
     thickness: float = key(1.0, "factor on the thickness of all walls and vaults (not of floors)", gt=0, le=10)
     floors: float = key(1.0, "factor on the stiffness of flexible floors and joists", gt=0, le=1e6)
     prestress: float = key(1.0, "factor on the forces on top of the walls", ge=0, le=100)
@@ -107,7 +107,7 @@ class FrameRules(Table):
     diagonal_strength: Stress = key(
         about="tau_0 of diagonal cracking: shear strength at zero compression", gt=0, source="NTC 2018, Circ. 7/2019 C8.5.I"
     )
-    compressive_strength: Stress | None = key(None, "f_m; default that of [material]", gt=0)
+    compressive_strength: Stress | None = key(None, "compressive strength f_m; default: value of [material]", gt=0)
     fixity: Literal["double", "single"] = key(
         "double",
         "ends of the piers that are fixed against rotation. double: both ends (between stiff spandrels); single: only the lower end",
@@ -115,8 +115,7 @@ class FrameRules(Table):
 
 
 class Pushover(Staged, CrackOptions, BuildingAnalysis):
-    """The push of a building of walls and floors, or of a vault or dome as a shell, by growing horizontal forces; cracks event
-    by event."""
+    """Pushover of a building of walls and floors, or of a vault or dome, as a shell. The cracks are calculated event by event."""
 
     kind: Literal["pushover"]
     view: ClassVar = "shell"
@@ -173,14 +172,14 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
         "name of the stage whose results are reported as the results of the analysis; default: the last stage with a "
         "horizontal load, otherwise the last stage",
     )
-    mesh: ShellOptions = key(ShellOptions(), "elements, [analysis.mesh]")
+    mesh: ShellOptions = key(ShellOptions(), "options of the finite elements, [analysis.mesh]")
     constant_damage: bool = key(
         True,
         "true: the weight increases from 0 to 1 and causes damage before the horizontal load; false: the horizontal load "
         "acts on undamaged walls",
         source="thesis 4.3.1",
     )
-    events: int = key(20_000, "most events", ge=1, le=100_000_000)
+    events: int = key(20_000, "greatest number of events", ge=1, le=100_000_000)
     budget: Annotated[float, Field(ge=0.01, le=1e7)] | None = key(
         None, "processor time in s after which each curve or stage ends with the results so far; default: no limit"
     )
@@ -194,13 +193,15 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
-        'method after an event for which no load is admissible at all points (see sla). "continue": '
-        "equilibrium iterations in displacement control (for rotating cracks, and for joints that slide "
-        'from the first load on). "load-unload" (default with stages): the constant loads remain, and the '
-        "point with the greatest lower limit of the load determines the next event",
+        'method after an event for which no load is admissible at all points (see the analysis `sla`). "continue": equilibrium '
+        'iterations in displacement control (for rotating cracks, and for joints that slide from the first load on). "load-unload" '
+        "(default with stages): the constant loads remain, and the point with the greatest lower limit of the load determines the next "
+        "event",
         source="thesis 4.3.1",
     )
-    continuation: Literal["newton", "steps", "implicit-explicit", "dissipation"] = key("newton", "equilibrium iterations, see sla")
+    continuation: Literal["newton", "steps", "implicit-explicit", "dissipation"] = key(
+        "newton", "method of the equilibrium iterations, as in the analysis `sla`"
+    )
     states: list[Annotated[int, Field(ge=1)]] = key(
         [], "numbers of the events whose state is saved, besides the peak and the last event", max_length=200
     )
@@ -211,8 +212,8 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     )
     variants: list[Variant] = key(
         [],
-        "sets of changed assumptions, with each of which the run in the first sense is repeated: a band of capacity curves, "
-        "[[analysis.variants]]",
+        "sets of changed assumptions, [[analysis.variants]]. The run in the first sense is repeated with each set, which gives a band "
+        "of capacity curves",
         max_length=50,
     )
     #: What the events of sla ask for and a push does not offer

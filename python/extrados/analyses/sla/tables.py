@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class Part(Placed):
     """Nodes of a prescribed displacement."""
 
-    ratio: float = key(1.0, "their share of the displacement", ge=-1e3, le=1e3)
+    ratio: float = key(1.0, "displacement of these nodes, as a multiple of the imposed displacement", ge=-1e3, le=1e3)
 
 
 class Load(Table):
@@ -31,17 +31,17 @@ class Load(Table):
         "boundary edges; point: force on the nearest node, or on all nodes of a place in equal parts; spread: "
         "force spread evenly along an edge; displacement: imposed displacement with ratios"
     )
-    edge: Literal["left", "right", "bottom", "top"] | None = key(None, "an outer edge")
+    edge: Literal["left", "right", "bottom", "top"] | None = key(None, "outer edge of the wall")
     x: Range | None = key(None, "x of the place, or its range [from, to]")
     y: Range | None = key(None, "y of the place, or its range [from, to]")
-    ax: Acceleration = key(0.0, "of gravity: acceleration to +x")
-    ay: Acceleration = key(-GRAVITY, "of gravity: acceleration to +y")
+    ax: Acceleration = key(0.0, 'for kind = "gravity": acceleration towards +x')
+    ay: Acceleration = key(-GRAVITY, 'for kind = "gravity": acceleration towards +y')
     value: Stress = key(0.0, 'for kind = "pressure": value of the pressure; positive if it acts onto the wall')
     px: LineForce = key(0.0, 'for kind = "line": force per length towards +x')
     py: LineForce = key(0.0, 'for kind = "line": force per length towards +y')
     fx: Force = key(0.0, 'for kind = "point" or "spread": force towards +x')
     fy: Force = key(0.0, 'for kind = "point" or "spread": force towards +y')
-    direction: Literal["x", "y"] = key("x", "of displacement")
+    direction: Literal["x", "y"] = key("x", 'for kind = "displacement": direction of the displacement')
     parts: list[Part] = key(
         [], 'for kind = "displacement": places that move together, with the ratios of their displacements', max_length=50
     )
@@ -84,7 +84,7 @@ class Watch(Placed):
 class Hold(Placed):
     """Nodes of a stage that are held or let go."""
 
-    fix: Literal["x", "y", "xy"] = key("xy", "directions")
+    fix: Literal["x", "y", "xy"] = key("xy", "directions in which the place is held")
 
 
 class Stage(Table):
@@ -92,7 +92,7 @@ class Stage(Table):
     before it ended: its displacements, its loads and its damage."""
 
     name: str | None = key(None, "name of the stage, in figures and results; default: its number", min_length=1, max_length=40)
-    hold: list[Hold] = key([], "places that are held from the start of this stage, at the positions that they have then", max_length=100)
+    hold: list[Hold] = key([], "places that are held from the start of this stage, at their positions at this start", max_length=100)
     free: list[Hold] = key(
         [],
         "supports (of the building, or of an earlier stage) that are removed in this stage. Their "
@@ -189,9 +189,9 @@ class CrackOptions(Table):
     crack_band: Length | None = key(None, "width h of the crack band; default: by `crack_band_rule`", gt=0)
     crack_band_rule: Literal["projected", "extent", "area"] = key(
         "projected",
-        "rule for the width of the crack band. projected: the width of a row of elements across the crack; extent: the "
-        "extent of the element across the crack, for cracks askew to the mesh that open every element on their way; area: the "
-        "rule of the thesis, sqrt(2 A) for linear and sqrt(A) for quadratic elements of area A",
+        "rule for the width of the crack band. projected: the width of a row of elements across the crack; extent: the extent of the "
+        "element across the crack, for cracks oblique to the mesh that open every element on their path; area: the rule of the thesis, "
+        "sqrt(2 A) for linear and sqrt(A) for quadratic elements of area A",
     )
     cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
         "rotating",
@@ -250,7 +250,7 @@ class Staged:
 
 
 class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
-    """Sequentially linear analysis: cracks event by event under constant loads A and growing loads lambda B."""
+    """Sequentially linear analysis: cracks, event by event, under constant loads A and increasing loads lambda B."""
 
     kind: Literal["sla"]
     view: ClassVar = "mesh"
@@ -319,8 +319,8 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     control: list[Watch] = key(
         [], "control displacement of the curve, as a sum of terms; default: the mean displacement under loads B", max_length=50
     )
-    mesh: MeshOptions = key(MeshOptions(), "elements, [analysis.mesh]")
-    events: int = key(5000, "most events", ge=1, le=10_000_000)
+    mesh: MeshOptions = key(MeshOptions(), "options of the finite elements, [analysis.mesh]")
+    events: int = key(5000, "greatest number of events", ge=1, le=10_000_000)
     budget: Annotated[float, Field(ge=0.01, le=1e7)] | None = key(
         None, "processor time in s after which each curve or stage ends with the results so far; default: no limit"
     )
@@ -382,7 +382,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     )
     strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)
     strength_length: Length | None = key(None, "correlation length of the random strength; default: one element", gt=0)
-    strength_seed: int = key(1, "of the strength field", ge=0, le=2**31 - 1)
+    strength_seed: int = key(1, "seed of the random strength", ge=0, le=2**31 - 1)
     verification: Verification = key(
         Verification(),
         "displacement-based verification of a wall that is loaded by the horizontal forces of its own masses towards +x, "

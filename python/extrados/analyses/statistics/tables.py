@@ -73,8 +73,10 @@ def check_hazard(intensities: list[float], rates: list[float]) -> None:
 
 
 class Fragility(RockingTable):
-    """Probability of uplift and collapse over many motions; with `levels` or as a `cloud` over an intensity measure, and
-    with a `hazard` curve the annual rate of collapse."""
+    """Probability of uplift and collapse over many motions.
+
+    With `levels` or `cloud`, the probability is a function of an intensity measure; a `hazard` curve gives the annual rate of collapse.
+    """
 
     kind: Literal["fragility"]
     considers: ClassVar = (*HOLDS, *SOFT_BASE)
@@ -83,7 +85,10 @@ class Fragility(RockingTable):
     starter_motion: ClassVar = "generated"
     count: int | None = key(None, "number of motions; default 1000, or the whole set", ge=1, le=10_000_000)
     seed: int | None = key(
-        None, "seed of the random numbers for the uncertain values. It also replaces the seed of a generated set of motions", ge=0, le=2**62
+        None,
+        "seed of the random numbers, for the uncertain values and for a generated set of motions; replaces the seed in [motion]",
+        ge=0,
+        le=2**62,
     )
     durations: list[Time] | None = key(
         None,
@@ -117,7 +122,8 @@ class Fragility(RockingTable):
         {},
         "coefficients of variation of width, height, thickness and restitution; of the thickness lost at worn `corners`; of the "
         "`density` of each block; of the `friction` of all joints together; of `stiffness` and `damping_ratio` of a compliant base. "
-        "`imperfection`: random displacement of corners and joints of blocks, divided by the shortest joint. Sampled by a Sobol sequence",
+        "`imperfection`: random displacement of corners and joints of blocks, divided by the shortest joint. The values are sampled by "
+        "a Sobol sequence",
     )
     sensitivity: int | None = key(
         None,
@@ -127,11 +133,13 @@ class Fragility(RockingTable):
         le=2**20,
         source="Saltelli and others 2010",
     )
-    confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
+    confidence: float = key(0.95, "confidence level of all intervals", gt=0, lt=1)
     bootstrap: int = key(500, "number of bootstrap samples for the confidence band of the fitted curve", ge=0, le=100_000)
     bins: int = key(20, "number of bins of the histogram, from zero to the critical rotation", ge=2, le=1000)
     settle: Time | None = key(
-        None, "time after the motion in which the structure must come to rest or collapse; default: 40 natural times", ge=0
+        None,
+        "time after the motion in which the structure must come to rest or collapse; default: 40 times the natural time (blocks: 1/p)",
+        ge=0,
     )
     hand_over: bool = key(
         False,
@@ -221,7 +229,7 @@ def numbers_in(values: Any, intensity: Any, key: str) -> Any:
 
 
 class Resonance(RockingTable):
-    """The motion under a cap that feeds most energy to a block, and the least cap that can overturn it."""
+    """Motion with a limited acceleration that supplies the most energy to a block, and the least limit that can cause overturning."""
 
     kind: Literal["resonance"]
     considers: ClassVar = ()
@@ -238,7 +246,7 @@ class Resonance(RockingTable):
 
 
 class RockingSpectrum(RockingTable):
-    """Rocking spectra of a motion: greatest rotation of blocks over 2 pi/p and alpha, or of the deck's arch in all sizes."""
+    """Rocking spectra of a motion: greatest rotation of blocks over 2 pi/p and alpha, or of the arch of the deck in all sizes."""
 
     kind: Literal["rocking-spectrum"]
     considers: ClassVar = ()
@@ -247,7 +255,7 @@ class RockingSpectrum(RockingTable):
     periods: list[Time] | None = key(
         None, "periods 2 pi/p (for arches, 2 pi sqrt(R/g)); default: 60 values from 0.2 to 8 s", min_length=1, max_length=5000
     )
-    slenderness: list[Angle] = key([10.0, 15.0, 20.0, 25.0], "alpha", min_length=1, max_length=50)
+    slenderness: list[Angle] = key([10.0, 15.0, 20.0, 25.0], "slenderness angles alpha of the blocks", min_length=1, max_length=50)
 
     @model_validator(mode="after")
     def _angles(self) -> "RockingSpectrum":
@@ -264,7 +272,7 @@ class RockingSpectrum(RockingTable):
 
 
 class HarmonicMap(RockingTable):
-    """Response to harmonic ground motion over frequency and amplitude: at rest, rocking (how far), overturned."""
+    """Response to harmonic ground motions over frequency and amplitude: rest, rocking (with the greatest rotation), or overturning."""
 
     kind: Literal["harmonic-map"]
     considers: ClassVar = (*HOLDS, *SOFT_BASE)
@@ -277,7 +285,7 @@ class HarmonicMap(RockingTable):
         min_length=1,
         max_length=1000,
     )
-    max_amplitude: Acceleration | None = key(None, "default 6 times uplift", gt=0)
+    max_amplitude: Acceleration | None = key(None, "greatest amplitude; default: 6 times the uplift acceleration", gt=0)
     amplitudes: int = key(48, "number of amplitudes", ge=2, le=1000)
-    cycles: int = key(30, "cycles of the motion", ge=2, le=1000, source="Spanos and Koh 1984")
+    cycles: int = key(30, "number of cycles of the motion", ge=2, le=1000, source="Spanos and Koh 1984")
     hand_over_cells: int = hand_over_cells()

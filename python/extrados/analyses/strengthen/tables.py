@@ -27,7 +27,7 @@ class Anchorage(Table):
     )
     shear_strength: Stress | None = key(None, "design shear strength of the masonry around the plate; gives the punching capacity", gt=0)
     bond_length: Length | None = key(None, "length of an injected anchor", gt=0)
-    bond_diameter: Length | None = key(None, "diameter of its borehole", gt=0)
+    bond_diameter: Length | None = key(None, "diameter of the borehole", gt=0)
     bond_strength: Stress | None = key(None, "design bond strength along the borehole; gives the pull-out capacity", gt=0)
 
     @model_validator(mode="after")
@@ -126,8 +126,8 @@ class Change(Table):
         about="key of the deck with its table, for instance structure.buttress_width, material.compressive_strength, "
         "joints.friction or dampers.0.damping; for a key of the options below, begin with `options.`"
     )
-    start: float | str | None = key(None, "value without the intervention; default: that of the deck")
-    stop: float | str = key(about='greatest change considered, in the unit of the key or as text such as "40 cm"')
+    start: float | str | None = key(None, "value without the intervention; default: value of the deck")
+    stop: float | str = key(about='last value considered, in the unit of the key or as text such as "40 cm"')
     count: int = key(9, "number of values from `start` to `stop`, including both, at which the capacity is calculated", ge=3, le=200)
 
 
@@ -140,9 +140,9 @@ class Weights(Table):
 
 
 class Strengthen(LimitAnalysisTable):
-    """The least intervention that meets a target: tie forces by linear programming, sizes and strengths by bracketing.
+    """Least intervention that meets a target: tie forces by linear programming, sizes and strengths by bracketing.
 
-    Without `ties` and `changes` it takes horizontal ties at several heights, and the sizes that make the kind of structure thick.
+    Without `ties` and `changes`, the alternatives are horizontal ties at several heights and the main sizes of the kind of structure.
     """
 
     kind: Literal["strengthen"]
@@ -175,7 +175,7 @@ class Strengthen(LimitAnalysisTable):
     ties: list[TieOption] = key([], "alternative ties, whose least sufficient force is calculated", max_length=50)
     changes: list[Change] = key([], "alternative changes of numbers in the deck, whose least sufficient value is calculated", max_length=50)
     combine: bool = key(True, "also calculate the combination of the given ties with the least total force, by one linear programme")
-    weights: Weights = key(Weights(), "weights of the cost, by which alternatives are compared")
+    weights: Weights = key(Weights(), "unit costs of length, force and volume, by which alternatives are compared")
     fragility: bool = key(False, "also calculate the fragility before and after the cheapest intervention; requires a [motion]")
     levels: list[Annotated[float, Field(gt=0, le=100)]] = key(
         [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0], "scale factors of the motions for these fragility curves", min_length=2, max_length=50

@@ -163,7 +163,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       if (wasOpen) say(tr`The server runs again. This page has kept its state.`);
     } else {
       banner.hidden = false;
-      banner.textContent = state === "moved" ? tr`extrados was started again, with another address. Open the address that it printed: Open… offers this deck there as the deck of your last page.` : reason ? tr`The server has ended the connection: ${reason}` : tr`The server does not answer. This page keeps your deck and tries to connect again … (${tries})`;
+      banner.textContent = state === "moved" ? tr`extrados was started again with another address. Open the address that extrados has printed. The list of Open… there contains this deck as the deck of your last page.` : reason ? tr`The server has ended the connection: ${reason}` : tr`The server does not answer. This page keeps your deck and tries to connect again … (${tries})`;
     }
     root.dataset.connected = connected;
   };
@@ -351,7 +351,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       const words = field.value.toLowerCase().split(/\s+/);
       const fits = (...texts) => words.every((word) => texts.join(" ").toLowerCase().includes(word));
       const groups = [];
-      if (last?.text && app.root.dataset.role !== "pupil" && fits("last", last.name)) groups.push([tr`Where you left off`, [item(last.name, tr`the deck of your last page`, { text: last.text, name: last.name, ...last.source })]]);
+      if (last?.text && app.root.dataset.role !== "pupil" && fits("last", last.name)) groups.push([tr`Last session`, [item(last.name, tr`the deck of your last page`, { text: last.text, name: last.name, ...last.source })]]);
       if (w.folder) groups.push([tr`Decks in ${w.folder}`, w.decks.filter((d) => fits(d)).map((d) => item(d, "", { path: d }))]);
       const blank = h("button", { class: "choice", "data-blank": true, onclick: () => { shown.close(); app.sheet.begin(true); } }, h("b", {}, tr`Blank sheet`), h("span", {}, tr`draw arches, piers, walls and blocks`));
       const plan = h("button", { class: "choice", "data-blank-plan": true, onclick: () => { shown.close(); app.plan.begin(true); } }, h("b", {}, tr`Blank plan`), h("span", {}, tr`draw walls and openings of a building`));
@@ -412,8 +412,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     dialog(tr`How to use this page`, h("ul", { class: "help" },
       h("li", {}, tr`Drag a handle of the drawing: sizes of the building, the vertex of a free block, a load, the thrust line, the tilt of the ground.`),
       h("li", {}, tr`Tab selects the next handle. Arrow keys move the handle, with Shift ten times as far. Enter or a double click opens a field for its value, with or without a unit.`),
-      h("li", {}, tr`Click into the stones, or drag in them, to draw the thrust line through that point. The slider below the drawing sets the thrust itself, from the least to the greatest (keys Home and End).`),
-      h("li", {}, tr`Two fingers, the wheel, or the keys + and − enlarge the drawing; 0 fits it into its frame.`),
+      h("li", {}, tr`Click or drag inside the stones to draw the thrust line through this point. The slider below the drawing sets the thrust, from the least to the greatest (keys Home and End).`),
+      h("li", {}, tr`Two fingers, the wheel, or the keys + and − zoom the drawing; 0 fits the drawing into its frame.`),
       h("li", {}, tr`Ctrl+Z undoes a change, Ctrl+Shift+Z repeats it, Ctrl+S saves the deck, Space plays a motion.`),
       h("li", {}, tr`Drop a deck (TOML), a drawing (DXF, JSON) or a record (CSV, AT2) on the page.`),
       h("li", {}, tr`A program on this machine serves the page. No data leaves this machine.`)),
@@ -428,7 +428,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   // Layers over the drawing
 
   const LAYERS = [["least", tr`Least thrust`], ["most", tr`Greatest`], ["through", tr`Chosen line`], ["plus", tr`Collapse +x`], ["minus", tr`Collapse −x`], ["central", tr`Central`], ["reactions", tr`Reactions`], ["joints", tr`Joints`]];
-  const playButton = h("button", { class: "layer", "aria-pressed": "false", title: tr`Let the mechanism move`, onclick: () => mechanism() }, tr`▶ Mechanism`);
+  const playButton = h("button", { class: "layer", "aria-pressed": "false", title: tr`Animate the mechanism`, onclick: () => mechanism() }, tr`▶ Mechanism`);
   const drawButton = h("button", { class: "layer", "data-draw": true, title: tr`Draw on the blocks of the deck, or on a blank sheet`, onclick: () => app.sheet.begin() }, tr`✎ Draw`);
   layersBar.append(drawButton, ...LAYERS.map(([name, label]) => h("button", { class: `layer ${name}`, "aria-pressed": String(Boolean(app.layers[name])), "data-layer": name, onclick: (e) => {
     app.layers[name] = !app.layers[name];

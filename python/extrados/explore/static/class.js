@@ -11,7 +11,7 @@ export function classPanel(app, tabs, box) {
   box.append(h("div", { class: "row wrap" }, send, freeze, count), grid);
   const cards = new Map();
   let timer = null, since = -1;
-  const frozen = (words) => { freeze.setAttribute("aria-pressed", String(words.frozen)); freeze.textContent = words.frozen ? tr`Let them go on` : tr`Freeze`; };
+  const frozen = (words) => { freeze.setAttribute("aria-pressed", String(words.frozen)); freeze.textContent = words.frozen ? tr`Let the pupils continue` : tr`Freeze`; };
 
   app.on("welcome", (words) => {
     if (words.pupil) pupil(words);

@@ -25,8 +25,8 @@ export const LESSONS = [
   },
   {
     title: tr`Oppenheim's arch`, tab: "structure",
-    task: tr`Tilt the ground by the handle at its right end until this arch of seven voussoirs collapses. Then set it upright, and let the mechanism move.`,
-    question: tr`At which horizontal acceleration does the arch collapse, and with how many hinges? Leave the ground at this tilt.`,
+    task: tr`Tilt the ground by the handle at its right end until this arch of seven voussoirs collapses. Then level the ground again, and animate the mechanism.`,
+    question: tr`At which horizontal acceleration does the arch collapse, and with how many hinges? Set the ground to this tilt again.`,
     choices: [tr`three hinges`, tr`four hinges`, tr`seven hinges`], right: 1,
     history: tr`Oppenheim (1992) studied this arch as a linkage of three bars with four hinges, and asked which ground motions the arch survives.`,
     deck: arch({ title: tr`Oppenheim's arch`, structure: ring(10.0, 1.5, 157.5, 7) }),
@@ -34,7 +34,7 @@ export const LESSONS = [
       const { plus_g: plus } = app.scene.capacity ?? {};
       if (!near(value(app, "structure.thickness"), 1.5, 1e-3) || !near(value(app, "structure.embrace"), 157.5, 1e-3)) return [false, tr`You have changed the sizes: begin the lesson again.`];
       if (!near(Math.abs(app.scene.gamma), plus, 0.03)) return [false, tr`The ground is tilted by ${number(app.scene.gamma, 3)} g; find the tilt at which the arch just collapses, within 3 %.`];
-      return [true, tr`Right: ${number(plus, 3)} g, a tilt of ${number((Math.atan(plus) * 180) / Math.PI, 4)}°. Four hinges make a chain of three links: one more than a statically determinate arch has.`];
+      return [true, tr`Right: ${number(plus, 3)} g, a tilt of ${number((Math.atan(plus) * 180) / Math.PI, 4)}°. Four hinges make a chain of three links. A statically determinate arch has only three hinges.`];
     },
   },
   {
@@ -49,7 +49,7 @@ export const LESSONS = [
       if (!near(value(app, "structure.height"), 9, 1e-3)) return [false, tr`Keep the original height of 9 m.`];
       if (c < 0.098) return [false, tr`With ${number(width, 3)} m the capacity is ${number(c, 3)} g: too little.`];
       if (c > 0.102) return [false, tr`With ${number(width, 3)} m the capacity is ${number(c, 3)} g: more than required.`];
-      return [true, tr`Right: about ${number(width, 3)} m. The capacity grows nearly as the width over the height, since the leeward buttress turns about its outer toe; a wide one would rather crack, which a deck considers by the key "fracture".`];
+      return [true, tr`Right: about ${number(width, 3)} m. The capacity is nearly proportional to the width over the height, since the leeward buttress rotates about its outer toe. A wide buttress would crack instead; a deck considers this by the key "fracture".`];
     },
   },
   {
@@ -97,7 +97,7 @@ export const LESSONS = [
   },
   {
     title: tr`Hooke's chain`, tab: "structure",
-    task: tr`A hanging chain carries its weight by tension alone. Turned upside down, the chain is a line of thrust. Many lines of thrust fit into this arch: click into the blocks to draw the line through that point.`,
+    task: tr`A hanging chain carries its weight by tension alone. Turned upside down, the chain is a line of thrust. Many lines of thrust fit into this arch. Click into the blocks to draw the line through the chosen point.`,
     question: tr`Draw the line of thrust that passes through the middle of the joint at the crown.`,
     choices: [tr`exactly one line of thrust fits into this arch`, tr`many lines of thrust fit`, tr`no line of thrust fits`], right: 1,
     history: tr`Hooke (1675) hid his answer in an anagram: as hangs the flexible line, so but inverted will stand the rigid arch. Poleni (1748) hung a loaded chain to judge the cracked dome of St Peter's.`,
@@ -122,7 +122,7 @@ export const LESSONS = [
       if (!near(value(app, "structure.radius"), 5, 1e-3) || !near(value(app, "structure.embrace"), 150, 1e-3)) return [false, tr`Keep the original radius of 5 m and embrace of 150°.`];
       if (!safety) return [false, tr`No line of thrust fits: the arch is too thin.`];
       if (!near(safety, 2, 0.02)) return [false, tr`The geometric safety is ${number(safety, 3)}.`];
-      return [true, tr`Right: ${number(value(app, "structure.thickness"), 3)} m. The middle half of the arch then holds a line of thrust.`];
+      return [true, tr`Right: ${number(value(app, "structure.thickness"), 3)} m. The middle half of the arch then contains a line of thrust.`];
     },
   },
   {

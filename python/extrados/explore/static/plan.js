@@ -102,7 +102,7 @@ export function planPanel(app, frame, box) {
   it.redo = () => travel(future, past);
   const free = () => { for (let n = 1; ; n += 1) if (!it.walls.some((w) => w.name === `wall ${n}`)) return `wall ${n}`; };
   function addWall(a, b) {
-    if (far(a, b) < 0.1) { app.say(tr`These points make no wall.`, true); draw(); return; }
+    if (far(a, b) < 0.1) { app.say(tr`These points do not define a wall.`, true); draw(); return; }
     commit(() => { it.walls = [...it.walls, { name: free(), start: a, end: b, thickness: sizes.thickness, openings: [] }]; it.chosen = it.walls.length - 1; it.hole = null; });
   }
   function addOpening(k, a, b) {

@@ -52,9 +52,9 @@ export function sidebar(app, box) {
       rows.push(row(tr`Least thrust`, h("span", { "data-number": "least" }, quantity(scene.least_N, "N")), tr`horizontal thrust of the chain at the present tilt`));
       rows.push(row(tr`Greatest thrust`, h("span", { "data-number": "most" }, quantity(scene.most_N, "N"))));
     }
-    if (scene.chosen) rows.push(row(tr`Chosen line`, quantity(scene.chosen.thrust_N, "N"), tr`thrust of the chosen line, between the least and the greatest`));
+    if (scene.chosen) rows.push(row(tr`Chosen line`, quantity(scene.chosen.thrust_N, "N"), tr`thrust of the chosen line, between the least and the greatest thrust`));
     if (scene.through) rows.push(row(tr`Through the point`, quantity(scene.through.thrust_N, "N")));
-    if (app.detail && "safety" in app.detail) rows.push(row(tr`Geometric safety`, app.detail.safety === null ? tr`unbounded` : number(app.detail.safety, 3), tr`inverse of the smallest part of every joint that still contains a thrust line under self-weight`));
+    if (app.detail && "safety" in app.detail) rows.push(row(tr`Geometric safety`, app.detail.safety === null ? tr`unbounded` : number(app.detail.safety, 3), tr`length of the joints, divided by the least length about the same middles that still contains a thrust line under self-weight`));
     if (scene.required_friction !== undefined) rows.push(row(tr`Required friction`, number(scene.required_friction, 3), tr`coefficient of friction required at collapse to ${side}`));
     for (const tie of scene.ties ?? []) rows.push(row(tr`${tie.name}, at collapse`, quantity(tie.force_N, "N"), tr`tension of the tie at collapse to ${side}`));
     rows.push(row(tr`Weight`, tr`${quantity(scene.weight_N, "N")} for ${number(scene.depth_m, 3)} m of depth`));

@@ -243,7 +243,7 @@ export function stage(box, hands) {
     shapes(ruler, [
       { tag: "path", d: `M${x} ${y - 4}V${y}H${x + step * view.k}V${y - 4}` },
       { tag: "text", x: x + step * view.k + 6, y: y + 1, text: quantity(step, "m", 1) },
-      ...(view.theta ? [{ tag: "text", x: view.w - 14, y: 18, "text-anchor": "end", text: tr`ground tilted by ${number(degrees(scene.gamma), 3)}°, as ${number(scene.gamma, 3)} g sideways` }] : []),
+      ...(view.theta ? [{ tag: "text", x: view.w - 14, y: 18, "text-anchor": "end", text: tr`ground tilted by ${number(degrees(scene.gamma), 3)}°, equivalent to ${number(scene.gamma, 3)} g horizontally` }] : []),
     ]);
   }
   function drawMarks(scene, layers) {

@@ -274,7 +274,7 @@ class FlyerTable(Table):
     head: Length = key(about="height of the intrados of the flyer at the pier", gt=0)
     foot: Length = key(about="height of the intrados of the flyer at the buttress", gt=0)
     thickness: Length = key(about="thickness of the flyer", gt=0)
-    radius: Length = key(about="radius of its intrados", gt=0)
+    radius: Length = key(about="radius of the intrados of the flyer", gt=0)
     voussoirs: int = key(6, "number of voussoirs of the flyer (flying buttress)", ge=2, le=500)
 
 
@@ -282,8 +282,8 @@ class AddedTable(Table):
     """A buttress added outside later, that props the outer one by a flyer (thesis Fig. 3-8)."""
 
     gap: Length = key(about="clear distance between the outer buttress and the added buttress", gt=0)
-    width: Length = key(about="its width", gt=0)
-    top: Length = key(about="its height", gt=0)
+    width: Length = key(about="width of the added buttress", gt=0)
+    top: Length = key(about="height of the added buttress", gt=0)
     flyer: FlyerTable = key(about="flyer between the outer buttress (upper end) and the added buttress")
 
 
@@ -301,7 +301,7 @@ class RightSide(Table):
 
 
 class AisledVault(PresetStructure):
-    """A nave on two piers with side aisles, outer buttresses and, if wished, flyers and fill (thesis 3.5)."""
+    """A nave on two piers with side aisles and outer buttresses; flyers and fill are optional (thesis 3.5)."""
 
     presets: ClassVar = AISLED_PRESETS
     starter: ClassVar = {

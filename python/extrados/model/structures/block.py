@@ -133,7 +133,7 @@ def make_block(
 
 
 class Block(Structure):
-    """Rigid block that rocks on its two toes: a rectangle, or a body given by mass, inertia, centre and toes."""
+    """Rigid block that rocks about its two toes: a rectangle, or a body given by mass, inertia, centre of mass and toes."""
 
     word: ClassVar = "block"
     kind: Literal["block"]

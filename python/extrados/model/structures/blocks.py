@@ -136,7 +136,7 @@ class LayerTable(Table):
 
 
 class Blocks(Structure):
-    """Any plane assembly of polygons, or solids of a file of meshes; edges or faces that lie on each other are the joints."""
+    """Plane assembly of polygons, or solids from a file. Edges or faces that lie on each other are the joints."""
 
     starter: ClassVar = {"block": '[{ name = "pier", points = [[0, 0], [1, 0], [1, 3], [0, 3]] }]'}
     word: ClassVar = "assembly of blocks"
@@ -202,7 +202,7 @@ class Blocks(Structure):
     scan: Scan | None = key(None, "courses into which a scanned wall or barrel (a point cloud) is divided, and their blocks")
     fill: Fill | None = key(None, "soil over the blocks of a bridge, up to a level above the highest block")
     surfacing: Surfacing | None = key(None, "road surface or ballast on the fill")
-    spandrels: Spandrels | None = key(None, "spandrel walls at the edges of the arches, of which only the weight acts")
+    spandrels: Spandrels | None = key(None, "spandrel walls at the edges of the arches; only their weight is considered")
 
     @model_validator(mode="after")
     def _source(self) -> "Blocks":

@@ -207,7 +207,7 @@ class Bonded(Table):
 class Laid(Bonded):
     """Keys of plane walls that are laid in running bond."""
 
-    openings: list[Opening] = key([], "rectangles cut out", max_length=1000)
+    openings: list[Opening] = key([], "rectangular openings", max_length=1000)
 
     @property
     def holes(self) -> list[Box]:
@@ -222,7 +222,7 @@ class Laid(Bonded):
 
 
 class Brickwork(Laid, Structure):
-    """Wall of equal units in running bond on the ground, loaded in its plane; half units close every other course."""
+    """Wall of equal units in running bond on the ground, loaded in its plane. Half units end every other course."""
 
     word: ClassVar = "wall"
     kind: Literal["brickwork"]
@@ -230,7 +230,7 @@ class Brickwork(Laid, Structure):
     starter: ClassVar = {"unit_length": '"40 cm"', "unit_height": '"20 cm"', "units": "5", "courses": "8"}
     unit_length: Length = key(about="length of a unit", gt=0)
     unit_height: Length = key(about="height of a unit", gt=0)
-    units: int = key(about="units in a course", ge=1, le=500)
+    units: int = key(about="number of units in a course", ge=1, le=500)
     courses: int = key(about="number of courses", ge=1, le=500)
     depth: Length = key(0.25, "thickness of the wall", gt=0)
 

@@ -401,9 +401,9 @@ def make_bridge(bridge: "Bridge", density: float = 2000.0) -> Assembly:
 
 
 class Bridge(Structure):
-    """Masonry arch bridge in its long direction: spans, piers, abutments, backing, fill and surfacing; not skew.
+    """Masonry arch bridge, along its length: spans, piers, abutments, backing, fill and surfacing; without skew.
 
-    All springings are at one level, y = 0; the intrados of the first span springs at x = 0.
+    All springings are at one level, y = 0; the intrados of the first span starts at x = 0.
     """
 
     word: ClassVar = "bridge"
@@ -421,7 +421,7 @@ class Bridge(Structure):
     backing: Backing | None = key(None, "masonry over the haunches")
     fill: Fill | None = key(None, "soil over the arches")
     surfacing: Surfacing | None = key(None, "road surface or ballast on the fill")
-    spandrels: Spandrels | None = key(None, "spandrel walls at the edges of the arches, of which only the weight acts")
+    spandrels: Spandrels | None = key(None, "spandrel walls at the edges of the arches; only their weight is considered")
     depth: Length = key(1.0, "width of the bridge that acts as one body, for instance the width between the spandrel walls", gt=0)
 
     @model_validator(mode="after")

@@ -44,7 +44,7 @@ def make_chimney(
 
 
 class Chimney(Spatial):
-    """Round hollow chimney or tower of blocks in rings, tapered where asked for, on level ground."""
+    """Round hollow chimney or tower of blocks in rings on level ground; it can be tapered."""
 
     word: ClassVar = "chimney"
     kind: Literal["chimney"]

@@ -94,7 +94,7 @@ def _course(inner: float, outer: float, low: float, high: float, reach: float, l
 
 
 class CrossVault(Spatial):
-    """Groin vault over a square or oblong bay: two barrels that cross, bonded by groin voussoirs of both."""
+    """Groin vault over a square or oblong bay: two barrels that cross. Groin voussoirs belong to both barrels."""
 
     word: ClassVar = "cross-vault"
     kind: Literal["cross-vault"]

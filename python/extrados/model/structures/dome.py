@@ -60,7 +60,7 @@ def make_dome(
 
 
 class Dome(Spatial):
-    """Spherical dome of stones in rings, on a level springing; whole, or open at the crown."""
+    """Spherical dome of stones in rings on a level springing; closed, or with an oculus at the crown."""
 
     word: ClassVar = "dome"
     kind: Literal["dome"]
@@ -72,7 +72,7 @@ class Dome(Spatial):
     embrace: Angle = key(180.0, "angle of embrace of a meridian section, from springing to springing", ge=20, le=180)
     oculus: Angle = key(0.0, "angle of embrace of the opening (oculus) at the crown; with 0, a keystone closes it", ge=0, le=170)
     rings: int = key(about="number of rings of blocks from the springing to the crown", ge=1, le=400)
-    lunes: int = key(about="stones in a ring", ge=4, le=400)
+    lunes: int = key(about="number of stones in a ring", ge=4, le=400)
     bond: Literal["lunes", "running"] = key(
         "lunes",
         "position of the head joints. lunes: above each other, as in a dome that is cracked into lunes; "

@@ -78,7 +78,7 @@ def make_frame(
 
 
 class Frame(Structure):
-    """Rocking frame: equal columns on the ground and a lintel that lies freely on them; they rock together."""
+    """Rocking frame: equal columns on the ground and a lintel that lies on them without connection; all columns rock together."""
 
     word: ClassVar = "frame"
     kind: Literal["frame"]

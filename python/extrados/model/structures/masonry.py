@@ -58,7 +58,7 @@ def make_column(
 
 
 class Column(Structure):
-    """Blocks or drums stacked on the ground, tapered where asked for."""
+    """Column of blocks or drums stacked on the ground; it can be tapered."""
 
     word: ClassVar = "column"
     kind: Literal["column"]

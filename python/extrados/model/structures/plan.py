@@ -34,7 +34,7 @@ RIDGES = 0.05
 
 
 class Plan(Structure):
-    """A building of plane walls on a plan, storey upon storey; z is up, the ground at 0."""
+    """Building of plane walls and floors in several storeys, given by its plan; z is upward, the ground is at z = 0."""
 
     word: ClassVar = "building"
     kind: Literal["building"]
@@ -50,14 +50,14 @@ class Plan(Structure):
         "floors": '[{ storey = 1, young = "50 MPa", thickness = "5 cm", load = "2 kPa" }, { storey = 2, young = "50 MPa", thickness = "5 cm", load = "1 kPa" }]',
     }
     storeys: list[Length] = key(about="height of each storey, from the ground up", min_length=1, max_length=50)
-    walls: list[PlanWall] = key(about="[[structure.walls]]", min_length=1, max_length=200)
+    walls: list[PlanWall] = key(about="walls of the building, [[structure.walls]]", min_length=1, max_length=200)
     corners: list[Corner] = key([], "corners where walls meet without being bonded, [[structure.corners]]", max_length=1000)
     beds: list[Bed] = key([], "bed joints that can slide, [[structure.beds]]", max_length=100)
-    floors: list[StoreyFloor] = key([], "[[structure.floors]]", max_length=200)
-    rods: list[Rod] = key([], "[[structure.rods]]", max_length=200)
-    props: list[Prop] = key([], "[[structure.props]]", max_length=200)
+    floors: list[StoreyFloor] = key([], "floors and roofs, [[structure.floors]]", max_length=200)
+    rods: list[Rod] = key([], "tie rods, [[structure.rods]]", max_length=200)
+    props: list[Prop] = key([], "props at the tops of walls, [[structure.props]]", max_length=200)
     prestress: list[Prestress] = key([], "vertical forces on walls, [[structure.prestress]]", max_length=200)
-    ring_beams: list[RingBeam] = key([], "[[structure.ring_beams]]", max_length=50)
+    ring_beams: list[RingBeam] = key([], "ring beams, [[structure.ring_beams]]", max_length=50)
     assumed: list[str] = key([], "assumptions of the deck that its sources do not state; each result repeats them", max_length=100)
     foundation_stiffness: Stiffness | None = key(
         None, "vertical stiffness of the ground per area of the soles of the walls; default: rigid", gt=0

@@ -38,7 +38,7 @@ class WallOpening(Table):
     storey: int = key(1, "number of the storey of the opening, from 1 at the ground", ge=1)
     x: Range = key(about="[from, to] along the wall, from its start")
     z: Range = key(about="[from, to] above the floor of the storey")
-    lintel: Lintel | None = key(None, "beam over it")
+    lintel: Lintel | None = key(None, "lintel: beam over the opening")
     through: bool = key(
         False,
         "whether the opening extends through the floors above; sill and head in `z` are then both heights above the floor of `storey`",
@@ -65,8 +65,8 @@ class PlanWall(Table):
 
     name: str = key(about="name in results", min_length=1, max_length=40)
     start: PlanPoint = key(about="[x, y] in plan of the start of the middle plane of the wall")
-    end: PlanPoint = key(about="[x, y] of its end")
-    thickness: Length | None = key(None, "thickness; or give thicknesses", gt=0)
+    end: PlanPoint = key(about="[x, y] in plan of the end of the middle plane of the wall")
+    thickness: Length | None = key(None, "thickness of the wall; alternatively give `thicknesses`", gt=0)
     thicknesses: list[Length] = key([], "thickness of the wall in each of its storeys, from the lowest upwards", max_length=50)
     storeys: list[int] | None = key(None, "[first, last] storey; default all", min_length=2, max_length=2)
     openings: list[WallOpening] = key([], "doors and windows", max_length=200)
@@ -160,10 +160,10 @@ class StoreyFloor(Table):
         None, "names of the walls around the floor, in order; default: all walls of the storey, if they form a single ring", min_length=3
     )
     young: Stress | None = key(None, "for a flexible floor: its elastic modulus; for joists: the elastic modulus of their wood", gt=0)
-    thickness: Length | None = key(None, "of a flexible floor", gt=0)
-    poisson: float = key(0.25, "of a flexible floor", ge=0, lt=0.5)
+    thickness: Length | None = key(None, "for a flexible floor: thickness of the membrane", gt=0)
+    poisson: float = key(0.25, "for a flexible floor: Poisson's ratio of the membrane", ge=0, lt=0.5)
     joist_area: Annotated[Area, Field(gt=0)] | None = key(None, "for joists: cross-section of one joist")
-    joist_spacing: Length | None = key(None, "of joists: their distance", gt=0)
+    joist_spacing: Length | None = key(None, "for joists: distance between neighbouring joists", gt=0)
     load: Stress = key(0.0, "weight per area of the floor and its loads; for a roof, per area of its slopes", ge=0)
     pitch: Angle | None = key(None, "slope of a roof from the horizontal", gt=0, le=75)
     roof: Literal["rafters", "trusses", "purlins"] | None = key(
@@ -231,7 +231,7 @@ class Rod(Table):
     start: Place = key(about="[x, y, z] of one end")
     end: Place = key(about="[x, y, z] of the other end")
     area: Annotated[float, Field(gt=0)] = key(about="cross-section in m^2")
-    material: str = key(about="a name of [materials]")
+    material: str = key(about="material of the rod: a name in [materials]")
     prestress: Force = key(0.0, "tensile force in the rod before the building deforms", ge=0)
 
 
@@ -239,14 +239,14 @@ class Prop(Table):
     """The top of a storey of a wall that cannot move across its plane: what holds it does not move."""
 
     wall: str = key(about="name of the wall, which must run along x or y")
-    storey: int = key(about="on top of this storey", ge=1)
+    storey: int = key(about="storey at whose top the wall is propped", ge=1)
 
 
 class Prestress(Table):
     """A vertical force on top of a wall, of post-tensioning or of a beam that rests on a part of it."""
 
     wall: str = key(about="name of the wall")
-    force: Force = key(about="downward, in all, spread evenly", gt=0)
+    force: Force = key(about="total downward force, distributed evenly", gt=0)
     x: Range | None = key(None, "[from, to] along the wall from its start, for instance the bearing of a beam; default: the whole length")
     level: Annotated[int, Field(ge=1)] | None = key(None, "storey on whose top the force acts; default: the highest storey of the wall")
 
@@ -278,7 +278,7 @@ class RingBeam(Table):
 
     storey: int = key(about="storey on whose top the ring beam lies; the upper face of the beam is level with the floor", ge=1)
     depth: Length = key(about="height of the beam", gt=0)
-    material: str = key(about="a name of [materials]")
+    material: str = key(about="material of the beam: a name in [materials]")
     walls: list[str] = key([], "names of the walls; default: all walls of the storey", max_length=200)
     reinforcement: Reinforcement | None = key(
         None,

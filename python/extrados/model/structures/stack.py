@@ -13,7 +13,7 @@ from extrados.schema.table import key
 
 
 class Stack(Structure):
-    """Two blocks upon each other, middle over middle, dry joints under both: a statue on its pedestal, two drums."""
+    """Two blocks with dry joints, one centred on the other, such as a statue on its pedestal or two drums."""
 
     word: ClassVar = "stack"
     kind: Literal["stack"]

@@ -128,7 +128,7 @@ def _placed(start: np.ndarray, way: np.ndarray, thickness: float) -> Callable[[B
 
 
 class Wall(Bonded, Spatial):
-    """Walls one unit thick in running bond, with openings and lintels, around corners that the courses pass in turn."""
+    """Walls in running bond, one unit thick, with openings and lintels. The courses alternate at corners."""
 
     word: ClassVar = "wall"
     kind: Literal["wall"]

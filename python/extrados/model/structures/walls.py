@@ -21,8 +21,8 @@ from extrados.schema.table import Table, key
 class Region(Placed):
     """Elements whose centres lie within x and y differ from the rest."""
 
-    material: str | None = key(None, "a name of [materials]")
-    linear: bool = key(False, "the elements stay linear")
+    material: str | None = key(None, "material of the region: a name in [materials]")
+    linear: bool = key(False, "whether the elements of the region remain linear (no cracks)")
     thickness: Length | None = key(None, "thickness of the region", gt=0)
     gauss: list[Annotated[int, Field(ge=1, le=4)]] | None = key(
         None, "numbers of Gauss points of each quadrilateral [along its first side, across this side]", min_length=2, max_length=2
@@ -50,7 +50,7 @@ class Bar(Table):
     start: list[Length] = key(about="[x, y] of one end", min_length=2, max_length=2)
     end: list[Length] = key(about="[x, y] of the other end of the bar", min_length=2, max_length=2)
     area: Annotated[float, Field(gt=0)] = key(about="cross-section in m^2")
-    material: str = key(about="a name of [materials]")
+    material: str = key(about="material of the bar: a name in [materials]")
     bonded: bool = key(
         False, "true: the bar is embedded and moves with each element that it crosses; false: it is attached only at its ends"
     )
@@ -65,14 +65,14 @@ class MeshedWall(Structure):
 
     thickness: Length = key(about="thickness out of plane", gt=0)
     regions: list[Region] = key([], "parts of the wall with other properties; if regions overlap, the last one counts", max_length=1000)
-    ties: list[TiedNodes] = key([], "nodes that move as one", max_length=100)
+    ties: list[TiedNodes] = key([], "groups of nodes that move together", max_length=100)
     bars: list[Bar] = key([], "bars between two places", max_length=1000)
 
 
 class Panel(Laid, MeshedWall):
-    """A rectangular wall or beam with rectangular openings and notches; x from left, y from bottom.
+    """Rectangular wall or beam with rectangular openings and notches; x from the left, y from the bottom.
 
-    Finite elements see it whole. Of a given unit it is also laid in running bond, for all that looks at stones.
+    Finite elements model the wall as a continuum. If the size of the unit is given, analyses of blocks use units in running bond.
     """
 
     word: ClassVar = "panel"
@@ -162,9 +162,9 @@ class MeshGroup(Table):
     """What a named group of a mesh file is in space: its elements, or the nodes that its lines, points or elements have."""
 
     name: str = key(about="name of the group in the file, or its number if it has no name", min_length=1, max_length=200)
-    thickness: Length | None = key(None, "thickness of its elements", gt=0)
+    thickness: Length | None = key(None, "thickness of the elements of the group", gt=0)
     material: str | None = key(None, "material of the elements of the group: a name in [materials]")
-    linear: bool = key(False, "its elements do not crack")
+    linear: bool = key(False, "whether the elements of the group remain linear (no cracks)")
     membrane: bool = key(False, "whether the elements have no bending stiffness, as in a floor")
     support: Literal["fixed", "pinned", "vertical"] | None = key(
         None, "support of the nodes of the group: fixed, pinned (rotations free), or vertical only"

@@ -31,7 +31,7 @@ class FrameOptions(Table):
         source="Circ. 7/2019, C8.7.1.16",
     )
     stiffness: float = key(0.5, "stiffness of the cracked masonry, divided by its elastic stiffness", gt=0, le=1, source="NTC 2018, 7.2.6")
-    confidence_factor: float = key(1.0, "divides all strengths", ge=1, le=2)
+    confidence_factor: float = key(1.0, "confidence factor, by which all strengths are divided", ge=1, le=2)
     sections: Literal[3, 5] = key(5, "number of sections of a pier, at Gauss-Lobatto points")
     drift_flexure: float = key(
         0.01, "drift (chord rotation) of a pier at which its flexural strength is lost", gt=0, le=0.1, source="NTC 2018, 7.8.2.2.1"

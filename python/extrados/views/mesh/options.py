@@ -14,9 +14,9 @@ LARGEST_MESH = 2_000_000  # elements
 class Refinement(Table):
     """Smaller elements within a range of x or y."""
 
-    x: Range | None = key(None, "[from, to]")
-    y: Range | None = key(None, "[from, to]")
-    size: Length = key(about="size of the elements there", gt=0)
+    x: Range | None = key(None, "range [from, to] of x")
+    y: Range | None = key(None, "range [from, to] of y")
+    size: Length = key(about="size of the elements in this range", gt=0)
 
 
 class MeshOptions(Table):
@@ -44,7 +44,7 @@ class MeshOptions(Table):
         "pattern of the mesh. structured: structured grid; random: triangles on randomly moved points (without mesh "
         "lines that cracks could follow)",
     )
-    seed: int = key(1, "of the random pattern", ge=0, le=2**31 - 1)
+    seed: int = key(1, "seed of the random pattern", ge=0, le=2**31 - 1)
     refine: list[Refinement] = key([], "ranges with smaller elements", max_length=100)
     lines_x: list[Length] = key([], "x of additional mesh lines", max_length=2000)
     lines_y: list[Length] = key([], "y of additional mesh lines", max_length=2000)
