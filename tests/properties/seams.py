@@ -349,3 +349,16 @@ def tables_of_durations(deck: Deck, seed: int, within: float) -> None:
     alone = ask(deck, "fragility", count=3, bootstrap=0)
     ok(alone)
     near("median of one", alone.results.median_pga_g, np.median(alone.result.tables["ensemble"].columns["pga"]), within)
+
+
+@relation("failure-domain", st.tuples(decks("arch", friction=st.just(2.0)), number(0.8, 1.6), number(0.01, 0.05, 8)), 1e-9)
+def the_curve_by_the_rule_of_the_deck(deck: Deck, period: float, accuracy: float, within: float) -> None:
+    """Of the curves by impact rules, that by the rule of the deck is the curve of the map, as both are refined to the same accuracy."""
+    keys = {"pulse": "step", "durations": [period], "amplitudes": 5, "accuracy": accuracy, "hand_over_cells": 0}
+    answer = ask(deck, "failure-domain", **keys)
+    ok(answer)
+    r = answer.results
+    same = [one for one in r.amplitudes_by_rule or [] if abs(one.restitution - r.restitution) < within]
+    if not same or same[0].amplitudes_g[0] is None:
+        reject()
+    near("amplitude", same[0].amplitudes_g[0], r.mode_I.amplitudes_g[0], within)
