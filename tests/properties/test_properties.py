@@ -52,6 +52,7 @@ CHAPTERS = (
     "ways",
     "seldom",
     "divisions",
+    "seams",
 )
 for chapter in CHAPTERS:
     importlib.import_module(chapter)
