@@ -20,8 +20,8 @@ class Assumption(ResultModel):
     value: Any = fact("value, in `unit`; null if the deck gives no value and the analysis needs none")
     unit: str = fact("unit of the value")
     origin: Origin = fact(
-        "origin of the value: program default, table of the deck, override in the table of the analysis, or the method, "
-        "which allows one value only",
+        "origin of the value: default of the program, table of the deck, table of the analysis, or the method (if the "
+        "method allows one value only)",
         name="from",
     )
     exceptions: bool = fact("whether some joints or parts have different values")

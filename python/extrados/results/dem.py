@@ -128,7 +128,7 @@ class BlocksRun(KindResults):
     damping_loss_J: float = fact("energy lost in damping", "J")
     peak_base_shear_N: float = fact(
         "greatest horizontal force of the ground on the blocks over the output times, at the initial contacts and at the anchors of "
-        "ties and dampers. Contacts formed later are not included; a warning says if there are any",
+        "ties and dampers. Contacts formed later are not included; a warning reports such contacts",
         "N",
     )
     peak_base_shear_over_weight: float = fact("greatest horizontal force of the ground, divided by the weight of the structure")
@@ -140,9 +140,9 @@ class BlocksRun(KindResults):
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )
     edge_stress_at_rest_Pa: float | None = maybe(
-        "greatest compressive stress at an edge or corner of a joint at the start of the motion (constant loads, and with the initial "
-        "rotation if there is one): linear pressure without tension. On rigid contacts it includes the ground motion of the first time "
-        "step. Null if an edge or a corner alone carries the load",
+        "greatest compressive stress at an edge or corner of a joint at the start of the motion, for linear pressure without tension. "
+        "The loads are the constant loads, with the initial rotation. On rigid contacts, the stress includes the ground motion of the "
+        "first time step. Null if an edge or a corner alone carries the load",
         "Pa",
     )
     ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each of its segments")
@@ -215,7 +215,9 @@ class DemRun(BlocksRun):
         "runs that repeat the analysis with other values of damping, stiffness or friction", source="thesis Tables 7.1 to 7.7"
     )
     friction_threshold: float | None = maybe("least coefficient of friction at which no joint slides; null if not found")
-    water_force_N: list[float] = maybe("force of the water pressure on all blocks, including uplift: towards +x and upward", "N")
+    water_force_N: list[float] = maybe(
+        "force of the water pressure on all blocks, including uplift: component towards +x and upward component", "N"
+    )
 
 
 #: What the capacity of a tilt test is where blocks slide on joints whose forces statics does not fix
@@ -262,7 +264,9 @@ class DemTilt(BlocksTilt):
     hinges_opposite: list[NamedHinge] = fact("hinges of the collapse mechanism towards -x")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
     peak_slip_m: float = fact("greatest slip in the mechanism", "m")
-    water_force_N: list[float] = maybe("force of the water pressure on all blocks, including uplift: towards +x and upward", "N")
+    water_force_N: list[float] = maybe(
+        "force of the water pressure on all blocks, including uplift: component towards +x and upward component", "N"
+    )
 
 
 class SolidDemRun(BlocksRun):

@@ -203,7 +203,7 @@ class Tilt(KindResults):
     non_associated_reason: str = maybe("reason for the missing collapse state without dilatancy, if only the upper bound is given")
     touching_joints: list[int] = fact("joints in which the thrust line reaches an end of the joint without forming a hinge")
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires at collapse")
-    required_friction_joint: int = fact("the joint that needs it")
+    required_friction_joint: int = fact("joint that requires the greatest coefficient of friction")
     geometric_safety_factor: float | None = fact(
         "geometric safety factor without tilt: 1 divided by the least central part of the joints that "
         "contains a thrust line (found within 0.001), at most 100. Null if not requested, or if a "
@@ -384,7 +384,7 @@ class ThrustLine(ResultModel):
     )
     over_weight: float = maybe("horizontal thrust, divided by the weight of the structure")
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires")
-    required_friction_joint: str = fact("the joint that needs it")
+    required_friction_joint: str = fact("joint that requires the greatest coefficient of friction")
     greatest_eccentricity_ratio: float = fact(
         "greatest eccentricity (distance from the middle of the joint), divided by the length of the joint"
     )

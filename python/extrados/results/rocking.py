@@ -137,7 +137,7 @@ class HandOver(ResultModel):
         "starts from the positions and velocities of the blocks at this time",
         "s",
     )
-    reason: str = fact("condition that fails, and where")
+    reason: str = fact("condition that fails, with its time and place")
     outcome: WholeOutcome = fact("outcome of the whole motion")
     fixed_hinges_outcome: RockingOutcome = fact("outcome that the analysis with fixed hinges and without sliding would give")
     contacts: DemRun = fact("run of the blocks with rigid contacts; its times are those of the motion", source="Moreau 1988")
@@ -214,7 +214,7 @@ class Rocking(KindResults):
     stack: StackRocking = maybe("results of two stacked blocks")
     soft_base: SoftBaseRocking = maybe("results of a compliant base ([supports] stiffness)")
     thrust_line_residual_m: float = maybe(
-        "for an arch: greatest distance between the thrust line and the last hinge, through which it should pass", "m"
+        "for an arch: greatest distance between the thrust line and the last hinge, through which the line should pass", "m"
     )
 
     def judged(self, demand: Demand) -> Verdict:

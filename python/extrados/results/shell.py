@@ -62,7 +62,7 @@ class SeatMotion(ResultModel):
     @property
     def told(self) -> str:
         """Where it slid off, in words."""
-        return f"{self.floor} slides off wall {self.wall}, whose seat is {1e3 * self.length_m:.3g} mm long"
+        return f"{self.floor} slides off wall {self.wall}: the seat on this wall is {1e3 * self.length_m:.3g} mm long"
 
 
 class FootForce(ResultModel):
@@ -123,7 +123,7 @@ class StageOfPush(PushCurve):
     """One stage of several; loads are those in the direction of its own, with what stages before have left on. Of ground that
     gives way they are the forces that move it."""
 
-    name: str = fact("its name, or its number")
+    name: str = fact("name of the stage; its number if the deck gives no name")
     of: Literal["push", "settlement"] = fact("kind of stage: push or settlement")
     prefix: str = fact("prefix of the array names of this stage; empty for the stage that gives the results of the analysis")
     start_load_N: float = fact("load at the start of the stage", "N")

@@ -21,7 +21,7 @@ class Bilinear(ResultModel):
     yield_displacement_m: float = fact("displacement at the start of the plateau", "m")
     ultimate_displacement_m: float = fact(
         "ultimate displacement: displacement at which the load has decreased to 80 % of the peak, "
-        "or the last displacement if the load has not decreased so far",
+        "or the last displacement if the decrease is smaller",
         "m",
     )
     ductility: float = fact("ductility: ultimate displacement divided by yield displacement")
@@ -159,7 +159,7 @@ class SlaCurve(ResultModel):
 class SlaStage(SlaCurve):
     """One stage of several; loads are those in the direction of its own, with what stages before have left on."""
 
-    name: str = fact("its name, or its number")
+    name: str = fact("name of the stage; its number if the deck gives no name")
     prefix: str = fact("prefix of the array names of this stage; empty for the stage that gives the results of the analysis")
     start_load_N: float = fact("load at the start of the stage", "N")
     end_load_N: float | None = fact("load at the end of the stage", "N")

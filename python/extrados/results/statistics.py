@@ -66,8 +66,8 @@ class RotationLimit(ResultModel):
 
     rotation_ratio: float = fact("limit of the rotation, divided by the critical rotation")
     median: float = fact("median of the lognormal fragility curve for this limit, in `intensity_unit`")
-    dispersion: float = fact("its dispersion, of the logarithm")
-    median_interval: list[float | None] = fact("profile-likelihood interval of that median")
+    dispersion: float = fact("dispersion of the curve of `median` (standard deviation of the logarithm)")
+    median_interval: list[float | None] = fact("profile-likelihood interval of `median`")
     annual_rate: float = maybe("mean annual rate at which the limit is exceeded", "1/year")
     annual_rate_interval: list[float | None] = maybe("its profile-likelihood interval", "1/year")
 
@@ -78,7 +78,7 @@ class MeasureDispersion(ResultModel):
     measure: str = fact("intensity measure")
     unit: str = fact("unit of its median")
     median: float = fact("median of the lognormal collapse fragility curve in terms of this measure, in `unit`")
-    dispersion: float = fact("its dispersion, of the logarithm")
+    dispersion: float = fact("dispersion of the curve of `median` (standard deviation of the logarithm)")
     amplitude_dispersion: float = fact(
         "dispersion in terms of the amplitude of the motion, comparable between measures: half of "
         "`dispersion` for a measure that grows with the square of the amplitude"
@@ -140,9 +140,11 @@ class Ensemble(Annual):
     median: float | None = maybe(
         "median of the lognormal collapse fragility curve over the intensities of the motions", source="Jalayer and others 2017"
     )
-    dispersion: float | None = maybe("its dispersion, of the logarithm", source="Jalayer and others 2017")
-    median_interval: list[float | None] = maybe("profile-likelihood interval of that median")
-    dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
+    dispersion: float | None = maybe(
+        "dispersion of the curve of `median` (standard deviation of the logarithm)", source="Jalayer and others 2017"
+    )
+    median_interval: list[float | None] = maybe("profile-likelihood interval of `median`")
+    dispersion_interval: list[float | None] = maybe("profile-likelihood interval of `dispersion`")
     rotation_limits: list[RotationLimit] = maybe("curves of rotations beyond limits")
     measures: list[MeasureDispersion] = maybe(
         "for a cloud analysis: intensity measures, ranked by how well they separate collapse from survival; the best comes first",
@@ -202,43 +204,48 @@ class LevelShares(Annual):
         "median of the lognormal curve of the probability that a motion of a given level causes collapse, in `intensity_unit`",
         source="Baker 2015",
     )
-    dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
-    deviance: float | None = maybe("deviance of that curve")
-    degrees_of_freedom: int = maybe("its degrees of freedom")
+    dispersion: float | None = maybe("dispersion of the curve of `median` (standard deviation of the logarithm)", source="Baker 2015")
+    deviance: float | None = maybe("deviance of the curve of `median`")
+    degrees_of_freedom: int = maybe("degrees of freedom of the curve of `median`")
     goodness_p_value: float | None = maybe("p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true")
     median_interval: list[float | None] = maybe(
         "bootstrap confidence interval of `median`, resampled by motion (with all levels of each motion)"
     )
-    dispersion_interval: list[float | None] = maybe("bootstrap interval of that dispersion")
+    dispersion_interval: list[float | None] = maybe("bootstrap confidence interval of `dispersion`")
     first_collapse_median: float | None = maybe(
         "median of the lognormal curve of the lowest intensity at which a motion causes collapse, in `intensity_unit`",
         source="interval-censored likelihood: Burridge 1981",
     )
     first_collapse_dispersion: float | None = maybe(
-        "its dispersion, of the logarithm", source="interval-censored likelihood: Burridge 1981"
+        "dispersion of the curve of `first_collapse_median` (standard deviation of the logarithm)",
+        source="interval-censored likelihood: Burridge 1981",
     )
-    first_collapse_deviance: float | None = maybe("deviance of that curve")
-    first_collapse_degrees_of_freedom: int = maybe("its degrees of freedom")
+    first_collapse_deviance: float | None = maybe("deviance of the curve of `first_collapse_median`")
+    first_collapse_degrees_of_freedom: int = maybe("degrees of freedom of the curve of `first_collapse_median`")
     first_collapse_goodness_p_value: float | None = maybe(
         "p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true"
     )
-    first_collapse_median_interval: list[float | None] = maybe("profile-likelihood interval of that median")
-    first_collapse_dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
+    first_collapse_median_interval: list[float | None] = maybe("profile-likelihood interval of `first_collapse_median`")
+    first_collapse_dispersion_interval: list[float | None] = maybe("profile-likelihood interval of `first_collapse_dispersion`")
     uplift_median: float | None = maybe(
         "median of the lognormal curve of the probability that rocking starts, in `intensity_unit`", source="Baker 2015"
     )
-    uplift_dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
-    uplift_deviance: float | None = maybe("deviance of that curve")
-    uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
+    uplift_dispersion: float | None = maybe(
+        "dispersion of the curve of `uplift_median` (standard deviation of the logarithm)", source="Baker 2015"
+    )
+    uplift_deviance: float | None = maybe("deviance of the curve of `uplift_median`")
+    uplift_degrees_of_freedom: int = maybe("degrees of freedom of the curve of `uplift_median`")
     uplift_goodness_p_value: float | None = maybe(
         "p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true"
     )
     overturning_given_uplift_median: float | None = maybe(
         "median of the lognormal curve of the probability of collapse if rocking starts, in `intensity_unit`", source="Baker 2015"
     )
-    overturning_given_uplift_dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
-    overturning_given_uplift_deviance: float | None = maybe("deviance of that curve")
-    overturning_given_uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
+    overturning_given_uplift_dispersion: float | None = maybe(
+        "dispersion of the curve of `overturning_given_uplift_median` (standard deviation of the logarithm)", source="Baker 2015"
+    )
+    overturning_given_uplift_deviance: float | None = maybe("deviance of the curve of `overturning_given_uplift_median`")
+    overturning_given_uplift_degrees_of_freedom: int = maybe("degrees of freedom of the curve of `overturning_given_uplift_median`")
     overturning_given_uplift_goodness_p_value: float | None = maybe(
         "p-value of the goodness of fit: probability of a greater deviance if the fitted curve is true"
     )
