@@ -19,13 +19,13 @@ SLID = 0.01
 #: Reasons in a few words
 HEADLINES = {
     "violated": "assumptions that do not hold",
-    "static-peak": "how long the peak lasts",
+    "static-peak": "the duration of the peak acceleration",
     "impact-rule": "the energy loss at impacts",
     "last-digits": "a chaotic response",
-    "sine-for-record": "the parts of the motion outside its strongest sine",
+    "sine-for-record": "the parts of the motion that its strongest sine does not include",
     "sliding": "sliding of blocks",
-    "drums": "blocks that move separately",
-    "hinges-elsewhere": "hinges that form elsewhere",
+    "drums": "separate motion of the blocks",
+    "hinges-elsewhere": "hinges outside the assumed mechanism",
     "membrane-without-sliding": "elements that cannot slide",
     "tension": "tensile strength of the elements",
     "mortar": "mortar",

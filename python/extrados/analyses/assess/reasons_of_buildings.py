@@ -87,7 +87,7 @@ def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
         "code-check",
         mine,
         f"The governing check of the codes is {name} of {check.code}, demand {check.demand:.3g}, capacity "
-        f"{check.capacity:.3g} {check.unit}{moves}. The safety factor is {margin:.3g}. By {what} it would be {other:.3g}.",
+        f"{check.capacity:.3g} {check.unit}{moves}. The safety factor is {margin:.3g}. By {what} the safety factor would be {other:.3g}.",
         governing_margin=margin,
         demand=check.demand,
         capacity=check.capacity,
@@ -210,8 +210,8 @@ def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "frame-and-shells",
         mine,
-        f"{' '.join(told)} In the frame, sections carry no tension, and piers slide or crack at the strengths of codes. Its flanges act "
-        "only by the vertical shear at corners. The shells have the tensile strength of the masonry and also bend out of plane. They "
+        f"{' '.join(told)} In the frame, sections carry no tension, and piers slide or crack at the strengths of codes. The flanges of the frame "
+        "act only by the vertical shear at corners. The shells have the tensile strength of the masonry and also bend out of plane. They "
         "slide only along joints that the deck gives.",
         **numbers,
     )

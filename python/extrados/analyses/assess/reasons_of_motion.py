@@ -76,9 +76,9 @@ def sine_for_record(facts: Facts, pairs: list[Pair]) -> Reason | None:
         "sine-for-record",
         mine,
         f"The criterion replaces the motion by its strongest sine, with {abs(a.primary_impulse.amplitude_g):.3g} g and a period of "
-        f"{a.primary_impulse.period_s:.3g} s (it explains {100 * a.primary_impulse.goodness_of_fit:.0f} % of the squared acceleration "
-        f"over its duration). Under this sine alone, the greatest rotation is {100 * sine.peak_rotation_ratio:.0f} % of the critical "
-        f"rotation. Under the whole motion, it is {100 * whole.peak_rotation_ratio:.0f} %.",
+        f"{a.primary_impulse.period_s:.3g} s. This sine explains {100 * a.primary_impulse.goodness_of_fit:.0f} % of the squared "
+        f"acceleration over its duration. Under this sine alone, the greatest rotation is {100 * sine.peak_rotation_ratio:.0f} % of the critical "
+        f"rotation. Under the whole motion, the greatest rotation is {100 * whole.peak_rotation_ratio:.0f} %.",
         sine_amplitude_g=abs(a.primary_impulse.amplitude_g),
         sine_period_s=a.primary_impulse.period_s,
         sine_rotation_ratio=sine.peak_rotation_ratio,

@@ -228,7 +228,7 @@ class Work:
             "max_amplitude": f"{2.0 * amplitude!r} g",
             "hand_over_cells": 0,  # of the mechanism of fixed hinges: a duration to compare with, no verdict
         }
-        told = f"a constant horizontal acceleration of {amplitude:.3g} g: how long it must act to cause collapse"
+        told = f"a constant horizontal acceleration of {amplitude:.3g} g: shortest duration that causes collapse"
         found = self.probe("rocking", told, "failure-domain", keys, tell=False)
         if found is None or not isinstance(found.results, FailureDomain) or found.results.at_amplitudes is None:
             return None

@@ -399,8 +399,8 @@ def _weaker(context: Context, options: LocalMechanism, side: int, turning: float
         why, without = "Blocks crush at the hinges", "crushing"
         found = replace(found, words=f"{found.words}, which crushes,")
     context.warnings.append(
-        f"{why} before the rigid-body mechanism starts, whose multiplier would be {turning:.3g} without {without}. The "
-        "displacement capacity is therefore not known."
+        f"{why} before the rigid-body mechanism starts. Without {without}, the multiplier of this mechanism would be "
+        f"{turning:.3g}. The displacement capacity is therefore not known."
     )
     return found
 

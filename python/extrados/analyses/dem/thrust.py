@@ -78,8 +78,8 @@ def put_thrust(options: Dem, seen: BlocksSeen, result: Result) -> dict[str, floa
     if options.rigid and (degree := redundancy(model, found)):
         result.warnings.append(
             f"the forces of rigid contacts are in general not unique: at the start of the motion the contacts that carry forces have {degree} "
-            "unknowns more than equations of equilibrium. The key `thrust` gives one of many states of equilibrium; springs depend on the stiffness of the joints, and limit "
-            "analysis gives the least and the greatest thrust"
+            "unknowns more than equations of equilibrium. The key `thrust` gives one of many states of equilibrium. With springs, the state "
+            "depends on the stiffness of the joints. Limit analysis gives the least and the greatest thrust"
         )
     if seen.sliding.ratio > SLID:
         result.warnings.append(
@@ -87,7 +87,7 @@ def put_thrust(options: Dem, seen: BlocksSeen, result: Result) -> dict[str, floa
             "their length"
         )
     if np.nanmax(model.values.tension, initial=0.0) > 0.0:
-        result.warnings.append("the key `thrust` neglects the tension of mortar, in stresses as well as in the places of forces")
+        result.warnings.append("the key `thrust` neglects the tension of mortar in the stresses and in the positions of the forces")
     if isinstance(model, SolidModel):
         sides = np.column_stack([model.assembly.a, model.assembly.b])
         result.arrays["contact_block"] = Array(sides, ("contact", "side"), "", "numbers of both blocks of each contact; -1 is the ground")

@@ -390,7 +390,7 @@ def _refuse_unlimited(word: str, job: Places, train: Train) -> NoReturn:
     """Say why no position limits the load: none has a load on the structure, or loads only compress it."""
     low, high = job.span
     if not any(train.within(low, high, place if way > 0 else low + high - place) for place, way in zip(job.places, job.ways, strict=True)):
-        raise Refused(f"places: at none of these positions does a load act on the {word}", ("analysis", "places"))
+        raise Refused(f"places: no load acts on the {word} at any of these positions", ("analysis", "places"))
     raise Refused(f"no load of this kind causes collapse of the {word}, because such loads only compress the joints", WHOLE)
 
 
@@ -445,7 +445,8 @@ def _places(options: MovingLoad, train: Train, low: float, high: float) -> tuple
         back = low + high - ahead
     if len(ahead) > MOST_PLACES:
         raise Refused(
-            f"{len(ahead)} positions of the train are more than {MOST_PLACES}: reduce `count`, or give `places`", ("analysis", "count")
+            f"the train has {len(ahead)} positions; at most {MOST_PLACES} are allowed: reduce `count`, or give `places`",
+            ("analysis", "count"),
         )
     if not options.both_ways:
         return ahead, np.ones(len(ahead))
@@ -557,7 +558,7 @@ def _words(options: MovingLoad, r: out.MovingLoad, what: str, where: str, positi
         factors = "" if r.live_load_factor == 1.0 else f" with its load factor of {r.live_load_factor:.3g}"
         text = (
             f"{what[:1].upper()}{what[1:]} carries {r.adequacy_factor:.3g} times {'the train' if r.train == 'train' else r.train}{factors} at "
-            f"the most dangerous place, with {where}{heading}: {three_figures(r.collapse_load_N / 1e3)} kN are then on the structure."
+            f"the most dangerous place, with {where}{heading}. The total load is then {three_figures(r.collapse_load_N / 1e3)} kN."
         )
     else:
         text = f"The least collapse load of {what} is {three_figures(r.collapse_load_kN_per_m)} kN per metre of depth, with {where}."

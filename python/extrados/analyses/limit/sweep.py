@@ -175,7 +175,7 @@ def _store(
             np.array([c.value for c in r.changes]),
             ("change",),
             "",
-            "values of the key in `vary` at which the mechanism, or whether there is one, changes",
+            "values of the key in `vary` at which the mechanism changes, or at which a mechanism begins or ceases to exist",
         ),
     }
     if options.fracture:

@@ -98,8 +98,8 @@ def run(context: Context, options: FailureCurves) -> Result:
     )
     if r.agreement is not None and r.agreement < 1.0:
         result.warnings.append(
-            f"{pairs.count(False)} of {len(pairs)} verdicts by the curves differ from the runs under the whole motion, because a curve "
-            "covers a single impulse, not the motion before and after it. Use the outcomes of the runs"
+            f"{pairs.count(False)} of {len(pairs)} verdicts by the curves differ from the runs under the whole motion. A curve covers a "
+            "single impulse, not the motion before and after it. Use the outcomes of the runs"
         )
     longest = max(len(d) for d, _, _ in curves)
     padded = [np.array([np.append(np.asarray(c[k]), np.full(longest - len(c[k]), np.nan)) for c in curves]) for k in (0, 1)]

@@ -122,7 +122,7 @@ def _check_force(work: Sizing, one: TieAlternative, place: int, force: float, st
         return force, worth, False
     if worth.bound != "upper":
         raise NoAnswer(
-            f"{one.name}: the least force {force:.6g} N and the collapse load at it, {worth.value} g, are not consistent: {worth.reason}"
+            f"{one.name}: the least force, {force:.6g} N, is not consistent with the collapse load at this force, {worth.value} g: {worth.reason}"
         )
     low, high = force, min(2.0 * force, one.most)
     while not reached(statics, at(high)):
