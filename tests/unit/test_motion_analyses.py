@@ -243,7 +243,7 @@ def test_exported_record_is_the_motion(tmp_path) -> None:
     [
         ('kind = "record"\nfile = "x"\npga = 0.3', "motion.pga: a number without a unit is ambiguous"),
         ('kind = "record"\nfile = "x"\npga = "0.3 g"\npgv = 0.1', "give only one of the keys `pga`"),
-        ('kind = "record"\nfile = "x"\nsa = "0.3 g"', "sa and sa_period go together"),
+        ('kind = "record"\nfile = "x"\nsa = "0.3 g"', "sa and sa_period are only valid together"),
         ('kind = "suite"', "give only one of the keys `files`, `pattern`, `folder` and `records`"),
         ('kind = "generated"\nmmi = 6\nduration = 3\nscaling = "sokolov"', "'thesis', 'fourier' or 'energy'"),
         ('kind = "generated"\nmmi = 6\nduration = 3\nlines = [1.0]', "expected 2 to 2000"),

@@ -90,7 +90,7 @@ class Model(BodyModel[Run]):
         if not bodies.laws or any(not 0 <= k < len(bodies.laws) for k in bodies.joints.values()):
             raise ValueError("a joint refers to the number of a joint law that does not exist")
         if options.rigid and any(law.strength > 0.0 for law in bodies.laws):
-            raise ValueError("corners crush on springs alone")
+            raise ValueError("crushing of corners requires springs at the joints")
         n, parts = len(bodies.mass), len(bodies.parts)
         corners = [len(part) for part in bodies.parts]
         handle, status = _core.api_dem.create(

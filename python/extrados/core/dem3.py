@@ -93,7 +93,7 @@ class Model(BodyModel[Run]):
         if not solids.laws or any(not 0 <= k < len(solids.laws) for k in solids.joints.values()):
             raise ValueError("a joint refers to the number of a joint law that does not exist")
         if options.rigid and any(law.strength > 0.0 for law in solids.laws):
-            raise ValueError("corners crush on springs alone")
+            raise ValueError("crushing of corners requires springs at the joints")
         if (most := max((len(face) for faces in solids.faces for face in faces), default=0)) > MOST_CORNERS:
             raise ValueError(f"a face has {most} corners, expected at most {MOST_CORNERS}")
         n, parts = len(solids.mass), len(solids.vertices)

@@ -49,7 +49,7 @@ class Law:
         if min(self.friction, self.cohesion, self.tension, self.damping, self.strength) < 0.0:
             raise ValueError("friction, cohesion, tension, damping and strength of a joint must be 0 or above")
         if self.strength > 0.0 and max(self.cohesion, self.tension) > 0.0:
-            raise ValueError("a joint whose corners crush has no mortar")
+            raise ValueError("a joint whose corners crush cannot have cohesion or tension")
 
 
 @dataclass(frozen=True)

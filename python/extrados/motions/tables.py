@@ -109,7 +109,7 @@ class Treated(Motion):
         if sum(v is not None for v in (self.pga, self.pgv, self.arias, self.sa)) > 1:
             raise ValueError("give only one of the keys `pga`, `pgv`, `arias` and `sa`")
         if (self.sa is None) != (self.sa_period is None):
-            raise ValueError("sa and sa_period go together")
+            raise ValueError("sa and sa_period are only valid together: give both keys")
         if self.low_cut is not None and self.high_cut is not None and self.low_cut >= self.high_cut:
             raise ValueError(f"`low_cut` {self.low_cut:g} Hz is not below `high_cut` {self.high_cut:g} Hz")
         return self
@@ -176,7 +176,7 @@ class Selection(TargetSpectrum):
         if self.least_factor > self.greatest_factor:
             raise ValueError("least_factor is above greatest_factor")
         if bool(self.limits) != (self.flatfile is not None):
-            raise ValueError("flatfile and limits go together")
+            raise ValueError("flatfile and limits are only valid together: give both keys")
         if self.code == "ASCE7" and self.damping != 0.05:
             raise ValueError("the spectrum of ASCE 7 is defined for 5 % damping only")
         return self
