@@ -497,7 +497,7 @@ def test_even_loads_alone_cross_a_bridge() -> None:
     count = len(two.arrays["place"].data)
     assert count == 2 * len(one.arrays["place"].data) > 18 and f"At {two['places_without_limit']} of {count} positions" in two.answer
     refused = run(moving([-10.0], axles=[], uniform=[short]), **keys)
-    assert refused.status == "refused" and "at none of these positions does a load act on the bridge" in refused.reason
+    assert refused.status == "refused" and "no load acts on the bridge at any of these positions" in refused.reason
 
 
 def test_partial_factors() -> None:

@@ -170,7 +170,7 @@ def test_a_change_that_helps_only_in_between_is_said_to():
     r = run({**nave, "analysis": [asked]}).results
     assert not r.met_before
     (one,) = r.interventions
-    assert one.meets_target and any("does not increase with the size" in text for text in one.adverse)
+    assert one.meets_target and any("A larger intervention is therefore not always safer" in text for text in one.adverse)
 
 
 def test_why_a_target_is_not_met_is_said_of_what_failed():

@@ -190,7 +190,7 @@ class Checkpoint:
                 yield int(path.name.partition("-")[0]), arrays, path
             else:
                 told = f"{path.parent.name}/{path.name}"
-                warnings.append(f"a saved batch of results is damaged and is calculated again: {told} is now {path.name}.damaged")
+                warnings.append(f"a saved batch of results is damaged and is calculated again. File {told} is renamed {path.name}.damaged")
                 with contextlib.suppress(FileNotFoundError):  # another run may have done so
                     path.rename(path.with_name(f"{path.name}.damaged"))
 

@@ -215,7 +215,9 @@ class LocalMechanism(Checked):
     multiplier: float = fact(
         "alpha_0: horizontal multiplier of the weights at which the mechanism starts", source="Circ. 7/2019 C8.7.1.2.1"
     )
-    participating_mass_kg: float = fact("M*, of the equivalent oscillator", "kg", source="Circ. 7/2019 C8.7.1.2.1")
+    participating_mass_kg: float = fact(
+        "M*: participating mass, which is the mass of the equivalent oscillator", "kg", source="Circ. 7/2019 C8.7.1.2.1"
+    )
     participating_part: float = fact(
         "e*: participating mass ratio, the ratio of g M* to the weight of the kinematic chain", source="Circ. 7/2019 [C8.7.1.5]"
     )

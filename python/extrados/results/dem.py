@@ -215,7 +215,9 @@ class DemRun(BlocksRun):
         "runs that repeat the analysis with other values of damping, stiffness or friction", source="thesis Tables 7.1 to 7.7"
     )
     friction_threshold: float | None = maybe("least coefficient of friction at which no joint slides; null if not found")
-    water_force_N: list[float] = maybe("force of the water pressure on all blocks, including uplift: towards +x and upward", "N")
+    water_force_N: list[float] = maybe(
+        "force of the water pressure on all blocks, including uplift: component towards +x and upward component", "N"
+    )
 
 
 #: What the capacity of a tilt test is where blocks slide on joints whose forces statics does not fix
@@ -262,7 +264,9 @@ class DemTilt(BlocksTilt):
     hinges_opposite: list[NamedHinge] = fact("hinges of the collapse mechanism towards -x")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
     peak_slip_m: float = fact("greatest slip in the mechanism", "m")
-    water_force_N: list[float] = maybe("force of the water pressure on all blocks, including uplift: towards +x and upward", "N")
+    water_force_N: list[float] = maybe(
+        "force of the water pressure on all blocks, including uplift: component towards +x and upward component", "N"
+    )
 
 
 class SolidDemRun(BlocksRun):

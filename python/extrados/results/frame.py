@@ -85,7 +85,7 @@ class FramePush(ResultModel):
     peak_base_shear_N: float = fact("greatest base shear", "N")
     displacement_at_peak_m: float = fact("control displacement at the greatest base shear", "m")
     drop_displacement_m: float | None = fact(
-        "control displacement at which the base shear has decreased by 20 %; null if it does not decrease so far", "m"
+        "control displacement at which the base shear has decreased by 20 %; null if the decrease is smaller", "m"
     )
     ultimate_displacement_m: float | None = fact(
         "ultimate displacement, the least of three: 20 % decrease of the base shear; all piers of one storey of a wall at their drift "

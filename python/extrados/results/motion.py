@@ -150,7 +150,7 @@ class ShakeTable(KindResults):
     peak_acceleration_g: float = maybe("greatest acceleration of the drive", "g")
     motion_peak_acceleration_g: float = maybe("greatest acceleration of the motion as given", "g")
     rms_taken_out_ratio: float = maybe("part of the motion that the high-pass filter removes, divided by the motion (root mean squares)")
-    use_of_limits: list[UseOfLimits] = maybe("share of each limit of the table that the motion needs, for each mass")
+    use_of_limits: list[UseOfLimits] = maybe("demand of the motion divided by each limit of the table; one row for each mass")
     time_scale: float = maybe("factor on time with which the motion fits the table best")
     amplitude_factor: float = maybe("factor on acceleration with which the motion fits the table best")
     played_displacement_m: float = maybe("greatest displacement of the scaled motion", "m")

@@ -214,7 +214,7 @@ class Rocking(KindResults):
     stack: StackRocking = maybe("results of two stacked blocks")
     soft_base: SoftBaseRocking = maybe("results of a compliant base ([supports] stiffness)")
     thrust_line_residual_m: float = maybe(
-        "for an arch: greatest distance between the thrust line and the last hinge, through which it should pass", "m"
+        "for an arch: greatest distance between the thrust line and the last hinge, through which the line should pass", "m"
     )
 
     def judged(self, demand: Demand) -> Verdict:

@@ -62,7 +62,7 @@ class SeatMotion(ResultModel):
     @property
     def told(self) -> str:
         """Where it slid off, in words."""
-        return f"{self.floor} slides off wall {self.wall}, whose seat is {1e3 * self.length_m:.3g} mm long"
+        return f"{self.floor} slides off wall {self.wall}: the seat on this wall is {1e3 * self.length_m:.3g} mm long"
 
 
 class FootForce(ResultModel):

@@ -21,7 +21,7 @@ class Bilinear(ResultModel):
     yield_displacement_m: float = fact("displacement at the start of the plateau", "m")
     ultimate_displacement_m: float = fact(
         "ultimate displacement: displacement at which the load has decreased to 80 % of the peak, "
-        "or the last displacement if the load has not decreased so far",
+        "or the last displacement if the decrease is smaller",
         "m",
     )
     ductility: float = fact("ductility: ultimate displacement divided by yield displacement")

@@ -61,10 +61,10 @@ class Intervention(ResultModel):
     meets_target: bool = fact("whether any of the calculated sizes meets the target")
     required_size: float | None = fact("least size that meets the target, in `unit`; null if none does")
     required_N: float | None = maybe("least yield force of the tie that meets the target; null if none does", "N")
-    depth_m: float = maybe("depth out of plane that one tie serves", "m")
+    depth_m: float = maybe("depth (out of plane) of the masonry for which one tie acts", "m")
     greatest_capacity: float | None = fact(
-        "best value of the target quantity over all sizes (the greatest; for a probability, the least), in the unit of the target; null "
-        "if no collapse mechanism remains or there is no result"
+        "best value of the target quantity over all sizes, in the unit of the target: the least for a probability, otherwise the greatest. "
+        "Null if no collapse mechanism remains, or without a result"
     )
     capacity_after: float | None = fact("value of the target quantity with the required size, in the unit of the target")
     safety_factor_after: float | None = fact("safety factor with the required size: value divided by demand")

@@ -182,7 +182,7 @@ def capacity_alone(carried: str, capacity: float, unit: str, bound: Bound | None
     """A base shear that a structure carries which vibrates and yields: no verdict follows from the peak ground acceleration."""
     text = (
         f"{carried} This capacity gives no verdict: the structure amplifies the motion and yields, so the peak ground acceleration "
-        "cannot be compared with it. For a verdict by displacement demand (response spectrum), give the seismic action in [code]."
+        "cannot be compared with the capacity. For a verdict by displacement demand (response spectrum), give the seismic action in [code]."
     )
     return judge(text, None, capacity, unit, "not-applicable", bound, violated)
 

@@ -108,5 +108,5 @@ def _statement(r: Strengthen, rocking: dict[str, str]) -> str:
         moves = f" (under the hazard, the strengthened building {rocking[one.name]})" if one.name in rocking else ""
         said.append(f"({number}) {one.name}, {size_told(one)}{then}{moves}{';' if number < len(met) else '.'}")
     if not met:
-        said.append("none: no tie and no thickness of those considered is sufficient.")
+        said.append("none. No tie and no thickness that was considered is sufficient.")
     return " ".join(said)

@@ -147,8 +147,8 @@ def _turning(work: Work, left: int, choice: Choice) -> None:
         table = hazard.scaled(motion, model, factor)
         if table is None:
             work.not_done.append(
-                "discrete elements at other scale factors were not run: a factor cannot scale the code "
-                "spectrum of the motion, because this spectrum is not given by one acceleration"
+                "discrete elements were not run at other scale factors, because the code spectrum of the motion "
+                "cannot be scaled: this spectrum is not given by one acceleration"
             )
             break
         if left < 1:

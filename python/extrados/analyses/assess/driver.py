@@ -71,7 +71,7 @@ def ask_costly(work: Work) -> None:
         if not work.wants(name) or name in work.rows:
             continue
         if name == "probability" and "rocking" in work.rows and work.rows["rocking"].status == "refused":
-            text = "this strategy counts collapses by rocking, and this building does not rock as one mechanism"
+            text = "this strategy counts collapses by rocking, but this building does not rock as a single mechanism"
             work.rows[name] = no_row(strategies.of(name), "left out", text)
         else:
             work.ask(strategies.of(name))
@@ -97,8 +97,8 @@ def _scaled(work: Work) -> None:
     words = f"{work.rows['rocking'].parameters}; critical scale factor from {row.parameters}"
     if high is None and low != curve.levels[-1]:
         words += (
-            "; at the next greater scale factor, blocks slide or hinges form outside the assumed mechanism, "
-            "so rocking gives only a lower bound of the scale factor that causes collapse"
+            ". At the next greater scale factor, blocks slide or hinges form outside the assumed mechanism. "
+            "Rocking then gives only a lower bound of the scale factor that causes collapse"
         )
     work.rows["rocking"] = work.rows["rocking"].model_copy(update={"parameters": words})
     outcome = work.rows["rocking"].outcome  # the run under the hazard itself is a factor of 1, on contacts where blocks slide

@@ -74,7 +74,7 @@ def conclusion(
         first = next(facts.rows[n] for n in facts.judged() if facts.outcome(n) == "cannot-stand")
         said.append(f"The {word} cannot stand: {first.label} proves that it collapses under self-weight.")
         if others := proven[1:]:
-            said.append(f"{labels(others)} gives the same conclusion by the same certificate, which counts only once.")
+            said.append(f"{labels(others)} gives the same conclusion by the same certificate. This certificate counts only once.")
         said.append(first.statement)
         if stands:
             said.append(f"This certificate leaves no doubt, so the opposite result of {labels(stands)} is not considered.")

@@ -67,8 +67,8 @@ def en1998(part: Part, peak: float | None, state: str = "SD", spectrum: Callable
     elif part.shaken:
         if part.period is None:
             barred = (
-                "T_a is not known. The action is the motion of the floor, so S_a is its response at T_a: give `period`, or for a part that "
-                "vibrates freely `young` of [material]"
+                "T_a is not known. The action is the motion of the floor, so S_a is the response to this motion at T_a: give "
+                "`period`. For a part that vibrates freely, `young` of [material] also gives the period"
             )
         elif spectrum is not None:
             asked = spectrum(part.period, 0.05) / GRAVITY

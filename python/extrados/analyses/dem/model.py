@@ -199,7 +199,7 @@ def doubts_of_springs(values: ContactValues, joint: str = "joint") -> list[str]:
     if ratio["rotation"] < impact_rules.LEAST_AT_ROTATION or ratio["edge"] < impact_rules.LEAST_AT_EDGE:
         found.append(
             f"the damping is low: {100 * ratio['rotation']:.3g} % of critical at rotational impact and {100 * ratio['edge']:.3g} "
-            "% at edge impact. At least 10 % and 25 % are advised; with less, blocks may bounce and walk"
+            "% at edge impact. At least 10 % and 25 % are advised; with less damping, blocks may bounce and move sideways"
         )
     return found
 
@@ -219,8 +219,8 @@ def _doubts_of_tension(values: ContactValues, joint: str) -> list[str]:
     if not np.nanmax(values.tension, initial=0.0) > 0.0:
         return []
     found = [
-        "the tensile strength of mortar acts at the ends or corners of a joint, so the joint carries up to three times the bending "
-        "moment of an elastic joint"
+        "the tensile strength of mortar acts at the ends or corners of a joint. The joint therefore carries up to three times the "
+        "bending moment of an elastic joint"
     ]
     less = np.flatnonzero(values.tension * values.friction > values.cohesion * (1.0 + 1e-9))
     if len(less):

@@ -163,7 +163,7 @@ def _refuse_worn_thrust(building: Building) -> None:
     """Refused where forces are to be placed in joints that are shorter than drawn."""
     if building.joints.worn_corners > 0.0:
         raise Refused(
-            "the places of forces and the stresses refer to joints as drawn, which worn corners shorten: remove `thrust` or `worn_corners`",
+            "the forces and stresses of `thrust` refer to joints as drawn, but worn corners shorten the joints: remove one of both keys",
             ("joints", "worn_corners"),
         )
 

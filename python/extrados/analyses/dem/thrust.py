@@ -87,7 +87,7 @@ def put_thrust(options: Dem, seen: BlocksSeen, result: Result) -> dict[str, floa
             "their length"
         )
     if np.nanmax(model.values.tension, initial=0.0) > 0.0:
-        result.warnings.append("the key `thrust` neglects the tension of mortar, in stresses as well as in the places of forces")
+        result.warnings.append("the key `thrust` neglects the tension of mortar in the stresses and in the positions of the forces")
     if isinstance(model, SolidModel):
         sides = np.column_stack([model.assembly.a, model.assembly.b])
         result.arrays["contact_block"] = Array(sides, ("contact", "side"), "", "numbers of both blocks of each contact; -1 is the ground")

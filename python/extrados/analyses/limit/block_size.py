@@ -51,7 +51,7 @@ def warning_of(rows: list[out.BlockSize]) -> str | None:
     if most is None or abs(most.relative_change or 0.0) <= LARGE:
         return None
     return (
-        f"The capacity depends on the size of the blocks: with {most.change} it changes by {100.0 * (most.relative_change or 0.0):+.2g} "
+        f"The capacity depends on the size of the blocks: with {most.change} the capacity changes by {100.0 * (most.relative_change or 0.0):+.2g} "
         "%. Use the size and bond of the real blocks, or use the lowest value"
     )
 

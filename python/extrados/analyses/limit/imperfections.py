@@ -136,9 +136,9 @@ def run(context: Context, options: Imperfections) -> Result:
     columns = dict(zip(senses, gamma.T, strict=True))
     result.tables = {"imperfections": TableData({"survey": list(range(1, options.count + 1)), **columns}, dict.fromkeys(columns, "g"))}
     result.answer = (
-        f"Of {options.count} random geometries, whose points lie within {1e3 * deviation:.3g} mm of the given geometry, 90 % have a "
-        f"capacity of {low:.4f} to {high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g). The given geometry has {given:.4f} "
-        "g."
+        f"The points of {options.count} random geometries lie within {1e3 * deviation:.3g} mm of the given geometry. Of these geometries, "
+        f"90 % have a capacity of {low:.4f} to {high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g). The capacity of the "
+        f"given geometry is {given:.4f} g."
     )
     if fallen:
         result.answer += f" {fallen} of them cannot stand."

@@ -390,7 +390,7 @@ def _refuse_unlimited(word: str, job: Places, train: Train) -> NoReturn:
     """Say why no position limits the load: none has a load on the structure, or loads only compress it."""
     low, high = job.span
     if not any(train.within(low, high, place if way > 0 else low + high - place) for place, way in zip(job.places, job.ways, strict=True)):
-        raise Refused(f"places: at none of these positions does a load act on the {word}", ("analysis", "places"))
+        raise Refused(f"places: no load acts on the {word} at any of these positions", ("analysis", "places"))
     raise Refused(f"no load of this kind causes collapse of the {word}, because such loads only compress the joints", WHOLE)
 
 
@@ -445,7 +445,8 @@ def _places(options: MovingLoad, train: Train, low: float, high: float) -> tuple
         back = low + high - ahead
     if len(ahead) > MOST_PLACES:
         raise Refused(
-            f"{len(ahead)} positions of the train are more than {MOST_PLACES}: reduce `count`, or give `places`", ("analysis", "count")
+            f"the train has {len(ahead)} positions; at most {MOST_PLACES} are allowed: reduce `count`, or give `places`",
+            ("analysis", "count"),
         )
     if not options.both_ways:
         return ahead, np.ones(len(ahead))

@@ -466,7 +466,7 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
         text += f"Towards -x the collapse acceleration is {back:.4f} g ({degrees(back):.2f} degrees). "
     text += _told(found)
     needed = np.inf if found.required_friction is None else found.required_friction
-    text += f"Friction of {needed:.2f} is needed" + (
+    text += f"The required coefficient of friction is {needed:.2f}" + (
         f"; the geometric safety factor of the upright {what} is {answer.safety:.2f}."
         if np.isfinite(answer.safety)
         else (
@@ -480,9 +480,9 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
     fracture = found.fracture
     if fracture and fracture.cracks:
         text += (
-            f"If the leeward buttress cracks ({fracture.crack_height_m:.2f} m above its base, down to the toe), "
-            f"the collapse acceleration is {fracture.collapse_acceleration_g:.4f} g ({fracture.tilt_angle_deg:.2f} "
-            f"degrees), which is {fracture.ratio:.2f} of the uncracked value."
+            f"If the leeward buttress cracks, the crack runs from {fracture.crack_height_m:.2f} m above its base down to the toe. "
+            f"The collapse acceleration is then {fracture.collapse_acceleration_g:.4f} g ({fracture.tilt_angle_deg:.2f} "
+            f"degrees), {fracture.ratio:.2f} times the uncracked value."
         )
     elif fracture and fracture.cracks is False:
         text += " The leeward buttress does not crack before this collapse."

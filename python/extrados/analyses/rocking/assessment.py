@@ -138,7 +138,7 @@ def _limits_of_criterion(context: Context, r: out.Assessment) -> list[str]:
     if rows and (not isinstance(context.deck.motion, SinePulse) or context.deck.motion.floor is not None):
         first = rows[0]
         warnings.append(
-            "the criterion was derived for single sines, so the strongest impulse of this motion is "
+            "the criterion was derived for single sines. The strongest impulse of this motion is therefore "
             f"replaced by a sine of {abs(first.amplitude_g):.3g} g and a period of {first.period_s:.3g} s. This sine "
             f"explains {100 * first.goodness_of_fit:.0f} % of the squared acceleration over its duration"
         )

@@ -185,7 +185,7 @@ def _answer(context: Context, model: SoftBaseModel, r: SoftBaseResponse, found: 
         "rotation from which gravity causes collapse"
     )
     said = {
-        "collapse": f"overturns to {way}: at {r.stop_time:.2f} s its rotation can no longer recover",
+        "collapse": f"overturns to {way}: from {r.stop_time:.2f} s on, the block can no longer recover",
         "recovery": f"rocks and recovers: {greatest}",
         "no-hinging": f"keeps its whole base on the ground: {greatest}",
     }[r.outcome]

@@ -560,7 +560,7 @@ def teeth_of_joints(law: JointLaw, factors: np.ndarray, options: CrackOptions) -
         for row, k in zip(rows or [], stiffness.tolist(), strict=False):
             if row is not None and core.largest_band(row, k) <= 1.0:
                 raise BadGeometry(
-                    f"joints.{name} is too small for a joint stiffness of {k:.4g} Pa/m, with which the softening law snaps back: give "
+                    f"joints.{name} is too small for a joint stiffness of {k:.4g} Pa/m: the softening law would snap back. Give "
                     f"more than {row.energy / core.largest_band(row, k):.4g} N/m"
                 )
     return tension, crushing, cohesion

@@ -79,7 +79,7 @@ def repeat(context: Context, options: Sla, result: Result) -> dict[str, out.Scat
     done = [options.seeds[k] for k in swept.members[passed]]
     if len(passed) < len(swept.members):
         left = ", ".join(str(options.seeds[k]) for k in np.delete(swept.members, passed))
-        result.warnings.append(f"the scatter of the peaks does not include the repetitions that did not pass a peak, with the seeds {left}")
+        result.warnings.append(f"the repetitions with the seeds {left} did not pass a peak; the scatter of the peaks does not include them")
     if not done:
         return {}
     loads = swept["peak_load"][passed]

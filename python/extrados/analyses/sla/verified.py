@@ -31,7 +31,7 @@ def verify_wall(context: Context, result: Result, model: SlaModel, options: Sla,
     if without > ROUNDING * GRAVITY * mass.sum():
         violated.append(
             f"Vertical loads of {without / 1000.0:.3g} kN on the wall are not part of the mass on which the "
-            "horizontal load acts, so the period and the demand are too small."
+            "horizontal load acts. The period and the demand are therefore too small."
         )
     y = model.mesh.xy[:, 1]
     top = float(shape[y > y.max() - 1e-6].mean()) / float(np.ptp(y))  # drift for a unit of the control displacement

@@ -154,7 +154,7 @@ def with_lapses(work: Sizing, row: out.Intervention, curve: tuple[list[float], l
     if not beyond:
         return row
     text = f"Of the calculated sizes above the required one, {len(beyond)} do not meet the target, for instance {beyond[0]:.4g} {row.unit}"
-    return row.model_copy(update={"adverse": [*row.adverse, f"{text.rstrip()}: safety does not increase with the size."]})
+    return row.model_copy(update={"adverse": [*row.adverse, f"{text.rstrip()}. A larger intervention is therefore not always safer."]})
 
 
 def with_debonding(row: out.Intervention, one: TieAlternative) -> out.Intervention:

@@ -35,9 +35,7 @@ def fill_ring(ring: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
     if not _whole(xy, triangles, ring):
         xy, triangles = ring, _flipped(ring, _ears(ring))
         if not _whole(xy, triangles, ring):
-            raise BadGeometry(
-                "the outline of this block crosses itself once the thickness of the joints is taken off: use smaller elements"
-            )
+            raise BadGeometry("without the thickness of the joints, the outline of this block crosses itself: use smaller elements")
     return xy, triangles
 
 

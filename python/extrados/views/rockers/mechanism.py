@@ -111,7 +111,7 @@ class MechanismModel:
             if abs(uplift - state.gamma) > SAME * abs(state.gamma):
                 raise NoView(
                     f"under self-weight the mechanism towards {WORD[side]} starts at {uplift:.6g} g, but limit analysis "
-                    f"gives {state.gamma:.6g} g: a load on the structure is not part of its mass",
+                    f"gives {state.gamma:.6g} g: the structure carries a load that is not part of its mass",
                     WHOLE,
                 )
             made.append(table)
@@ -216,7 +216,7 @@ class MechanismModel:
         if self.rule == "energy-safe" and max(self.projections) <= 0.0:
             found.append(
                 f"after an impact, the mechanism towards the opposite side does not start (c_v = {self.projections[0]:.3f} "
-                f"towards +x, {self.projections[1]:.3f} towards -x), so the structure comes to rest at each impact"
+                f"towards +x, {self.projections[1]:.3f} towards -x). The structure therefore comes to rest at each impact"
             )
         if self.energy_kept is not None and max(self.energy_kept) > max(kept) + LOST:
             found.append(
