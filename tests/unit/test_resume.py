@@ -125,6 +125,7 @@ tilt_accuracy = 0.05
 directions = ["+", "-"]
 events = 2150
 mechanism_ratio = 1e5
+without_equilibrium = "load-unload"
 mesh.size = "0.1 m"
 """,
     "sla in stages": WALL.replace("reference =", "# reference =")

@@ -192,10 +192,10 @@ CRUSHING = {"compressive_strength": 1e6, "crushing_energy": 2e3}
 )
 @pytest.mark.parametrize("events", [60, pytest.param(400, marks=pytest.mark.verify)])
 def test_a_skipped_region_holds_no_event(material, analysis, events) -> None:
-    """A changed factor and the regions that an event concerns give the events of a new factor and of all points."""
+    """A changed factor and the regions that an event concerns give the events of a new factor and of all points, also without equilibrium."""
     found = []
     for algorithm in ("update", "refactor"):
-        data = wall(**analysis, events=events, algorithm=algorithm)
+        data = wall(**{"without_equilibrium": "load-unload", **analysis, "events": events, "algorithm": algorithm})
         data["material"] |= material
         found.append(curves(data)[1][0].events)
     update, refactor = found
@@ -203,7 +203,7 @@ def test_a_skipped_region_holds_no_event(material, analysis, events) -> None:
     for name in ("point", "code", "equilibrium"):
         assert (getattr(update, name) == getattr(refactor, name)).all()
     for name in ("load", "limit_t", "monitors", "stored", "lost", "crack"):
-        np.testing.assert_allclose(getattr(update, name), getattr(refactor, name), rtol=3e-12)
+        np.testing.assert_allclose(getattr(update, name), getattr(refactor, name), rtol=1e-9, err_msg=name)
     assert update.ledger_error < 1e-11
 
 

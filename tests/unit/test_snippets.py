@@ -41,6 +41,7 @@ kind = "rocking"
 #: What stands for something of the reader's, by what the test has; none: a page that waits, a file or machine that is not here
 MEANT = {
     "FOLDER": "decks",
+    "WORD": "friction",
     "DIR": "results/my",
     "A": "results/my",
     "B": "results/my",
@@ -50,9 +51,10 @@ MEANT = {
     "ADDRESS": "",
     "results/a": "results/my",
     "results/b": "results/my",
+    "results/bridge": "results/my",
     "PATH": "my.toml",
 }
-AWAY = ("explore", "--scheduler", "--install-completion", "my-vault.toml", "--to compas", "--together")
+AWAY = ("explore", "--scheduler", "--install-completion", "my-vault.toml", "--to compas", "--together", ".ifc", ".dxf", "office/")
 
 
 def text_of(page: Path) -> str:
@@ -77,7 +79,10 @@ PYTHON = [
 
 
 def meant(line: str) -> list[str]:
-    return [MEANT.get(word, word) for word in shlex.split(line)[1:]]
+    """The words of a command with files that are here, without the file that a shell writes its output to."""
+    words = shlex.split(line.split(" > ")[0])[1:]
+    known = MEANT | ({"FOLDER": "results/my"} if words[0] == "report" else {})
+    return [known.get(word, word) for word in words]
 
 
 @pytest.mark.parametrize("line", ALL)
@@ -105,6 +110,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name in ("my.toml", "deck.toml", "decks/one.toml"):
         (tmp_path / name).write_text(ARCH)
     (tmp_path / "cases").symlink_to(ROOT / "cases")
+    (tmp_path / "house.toml").symlink_to(ROOT / "cases" / "building" / "two-rooms.toml")
     monkeypatch.chdir(tmp_path)
     assert CliRunner().invoke(app, ["run", "my.toml", "--quiet", "--no-figures"]).exit_code == 0
     return tmp_path
