@@ -237,7 +237,9 @@ def moved_model(text: str, shift: list[float], turn: int, skew: float, noise: fl
     share=0.5,
 )
 def models_anywhere(deck: Deck, shift: tuple, turn: int, skew: float, within: float) -> None:
-    """A model of COMPAS at any place, across x or y, is the same section; a block that is no prism is refused by its name."""
+    """A model of COMPAS at any place, across x or y, is the same section; a block that is no prism is refused by its name. Cuboids above
+    each other have a section across each axis, of which the program says that it takes that across y."""
+    turn = turn if deck["structure"]["kind"] in ("arch", "brickwork") else 0
     one = ask(drawn(deck), "tilt")  # an export has chords in place of arcs
     text = extrados.export({**deck, "analysis": [{"kind": "tilt"}]}, "compas")
     with tempfile.TemporaryDirectory() as name:

@@ -26,7 +26,8 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
     """The section of an assembly, and its depth [m] where all blocks have the same; COMPAS names no unit, metres unless
     one is given.
 
-    The plane is xz or yz, whichever all blocks are prisms across, or xy where all have a height in z alone. Supports
+    The plane is xz or yz, or xy where all have a height in z alone: all blocks are prisms across it. Cuboids are prisms along
+    every axis. They have one section only across an axis along which all share an interval: that axis is taken first. Supports
     become ground along their faces. NoView names the block that is no prism.
     """
     scale = UNITS[unit or "m"]
@@ -34,19 +35,20 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
     if len(nodes) > MOST_BLOCKS:
         raise BadGeometry(f"{name}: this file has {len(nodes)} blocks; at most {MOST_BLOCKS} are allowed")
     meshes = {key: mesh_of(node, f"{name}: block {key}") for key, node in nodes.items()}
-    for axis in (1, 0, 2):
-        sections = {key: section_of(xyz, faces, axis) for key, (xyz, faces) in meshes.items()}
-        if all(s is not None for s in sections.values()):
-            break
-    else:
-        faults = {AXES[a]: next(k for k, m in meshes.items() if section_of(*m, a) is None) for a in (1, 0, 2)}
+    lowest = np.max([xyz.min(axis=0) for xyz, _ in meshes.values()], axis=0)
+    highest = np.min([xyz.max(axis=0) for xyz, _ in meshes.values()], axis=0)
+    by_axis = {a: {key: section_of(*mesh, a) for key, mesh in meshes.items()} for a in (1, 0, 2)}
+    across = [a for a in sorted(by_axis, key=lambda a: lowest[a] >= highest[a]) if None not in by_axis[a].values()]
+    if not across:
+        faults = {AXES[a]: next(key for key, one in found.items() if one is None) for a, found in by_axis.items()}
         told = ", ".join(f"block {key} along {a}" for a, key in faults.items())
         raise NoView(
             f"{name}: a plane section requires blocks that are prisms perpendicular to one plane, and these blocks are not ({told})",
             ("structure", "file"),
         )
+    axis = across[0]
     blocks, ground, depths = [], [], []
-    for key, found in sections.items():
+    for key, found in by_axis[axis].items():
         assert found is not None
         outline, depth = scale * found[0], scale * found[1]
         depths.append(depth)
@@ -58,6 +60,8 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
         raise BadGeometry(f"{name}: all blocks are supports")
     one_depth = depths[0] if np.ptp(depths) < 1e-6 * max(depths) else None
     notes = [f"{name}: {len(blocks)} blocks and {len(ground)} supports, section across {AXES[axis]}"]
+    if other := [AXES[a] for a in across[1:] if a != 2 and lowest[a] < highest[a]]:
+        notes.append(f"{name}: the blocks are prisms along {other[0]} too. To use the section across {other[0]}, exchange x and y in the file")
     if one_depth is None:
         notes.append(
             f"{name}: the blocks have depths of {min(depths):.4g} to {max(depths):.4g} m across the section; the value of "
