@@ -1,13 +1,13 @@
 !> Discrete elements in space: blocks behind a handle, built in steps, and what a run leaves of them.
 !>
-!> create, laws (api_dem_run), joints, moves and dowels if any, surroundings; then the run (api_dem_run); then bodies, attitudes,
-!> slips.
+!> create, laws (api_dem_run), joints, moves, dowels and loads if any, surroundings; then the run (api_dem_run); then bodies,
+!> attitudes, slips.
 !> Body numbers are 1-based; mass 0 marks a support.
 module api_dem3
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: create, joints, moves, dowels, surroundings, bodies, attitudes, slips
+   public :: create, joints, moves, dowels, loads, surroundings, bodies, attitudes, slips
 
 contains
 
@@ -84,6 +84,29 @@ contains
       call set_dowels(built, body, place, axis, value, status)
       call handle_leave(handle)
    end subroutine dowels
+
+   !> Constant loads
+   subroutine loads(handle, nb, load, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use dem3_handle, only : built_solids, solids_take
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nb                        !! bodies
+      real(c_double), intent(in) :: load(3, 4, nb)            !! force [N]; arm in own axes times force x, y, z [N m]
+      integer(c_int), intent(out) :: status
+      type(built_solids), pointer :: built
+      integer :: k
+      call solids_take(handle, built, status)
+      if (status /= status_ok) return
+      if (nb /= size(built%set%item)) status = status_invalid_argument
+      if (status == status_ok) then
+         do k = 1, nb
+            built%set%item(k)%load = load(:, 1, k)
+            built%set%item(k)%load_arm = load(:, 2:4, k)
+         end do
+      end if
+      call handle_leave(handle)
+   end subroutine loads
 
    !> Gravity, the direction of horizontal ground motion, the scene, and velocities at the start
    subroutine surroundings(handle, gravity, way, domain, nb, rate, status)

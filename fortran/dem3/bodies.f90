@@ -10,7 +10,7 @@ module dem3_bodies
    private
    public :: most_corners, body, part, body_set, body_set_new, copy_bodies, place_part, turn_freely, world_inverse, &
       cross, &
-      spin_of
+      spin_of, load_moment, load_potential
 
    integer, parameter :: most_corners = 96     !! of a face
 
@@ -25,6 +25,9 @@ module dem3_bodies
       real(wp) :: spin(3) = 0.0_wp             !! of the half step before, at the present attitude [rad/s]
       real(wp) :: force(3) = 0.0_wp            !! of the contacts [N]
       real(wp) :: moment(3) = 0.0_wp           !! about the centroid [N m]
+      real(wp) :: load(3) = 0.0_wp             !! constant force [N]
+      !> Sum over its parts of arm, in the own axes, times force: a column for each component of the force [N m]
+      real(wp) :: load_arm(3, 3) = 0.0_wp
       real(wp) :: inverse(3, 3) = 0.0_wp       !! inverse of the inertia in the frame of space
       real(wp) :: mass = 0.0_wp                !! [kg]
       real(wp) :: inverse_mass = 0.0_wp        !! 0 for a support
@@ -248,6 +251,24 @@ contains
       real(wp) :: spin(3)
       spin = matmul(b%inverse, swing)
    end function spin_of
+
+   !> Moment of the constant forces, whose places rotate with the body, about the centroid [N m]
+   pure function load_moment(b) result(moment)
+      type(body), intent(in) :: b
+      real(wp) :: moment(3)
+      real(wp) :: arm(3, 3)
+      arm = matmul(b%turn, b%load_arm)
+      moment = [arm(2, 3) - arm(3, 2), arm(3, 1) - arm(1, 3), arm(1, 2) - arm(2, 1)]
+   end function load_moment
+
+   !> Potential of these forces at a place and at the attitude of the body, over that at rest [J]
+   pure function load_potential(b, x) result(energy)
+      type(body), intent(in) :: b
+      real(wp), intent(in) :: x(3)              !! [m]
+      real(wp) :: energy
+      ! The trace of the arms is the sum of arm times force.
+      energy = -dot_product(b%load, x - b%rest) - sum((b%turn - b%rest_turn) * transpose(b%load_arm))
+   end function load_potential
 
    pure function cross(a, b) result(c)
       real(wp), intent(in) :: a(3)

@@ -8,7 +8,7 @@ module dem3_model
    use dem_loading, only : move_rate
    use dem_jointed, only : jointed_model
    use dem_ties, only : add_tie_stiffness, stretch_ties, tie_dash_loss, tie_energy, tie_loss, trace_ties
-   use dem3_bodies, only : body, body_set, cross, place_part, spin_of, turn_freely
+   use dem3_bodies, only : body, body_set, cross, load_moment, load_potential, place_part, spin_of, turn_freely
    use dem3_dowels, only : act_dowel, dowel, dowel_energy
    use dem3_law, only : apply_pair_law, bond_points, contact_pair, contact_point, drop_points, elastic_energy, &
       find_points
@@ -483,7 +483,7 @@ contains
       end do
    end subroutine prescribe_supports
 
-   !> Velocity that follows from the forces of the last step; clears the forces
+   !> Velocity that follows from the forces of the last step; of the next ones it leaves the constant loads
    pure subroutine predict_velocity(model, b)
       type(solid_model), intent(in) :: model
       type(body), intent(inout) :: b
@@ -494,8 +494,8 @@ contains
       ! Work of the ground's part of the body force; gravity has a potential.
       b%work = b%work + 0.5_wp * model%drift * b%mass &
          * dot_product(model%pull + model%pull_before - 2.0_wp * model%gravity, b%v)
-      b%force = 0.0_wp
-      b%moment = 0.0_wp
+      b%force = b%load
+      b%moment = load_moment(b)
       b%touched = .false.
    end subroutine predict_velocity
 
@@ -684,7 +684,8 @@ contains
          now%leapfrog = now%leapfrog + 0.5_wp * (b%mass * dot_product(b%v, v) + dot_product(b%swing, spin_of(b, swing)))
          now%kinetic = now%kinetic + 0.125_wp * (b%mass * dot_product(b%v + v, b%v + v) &
             + dot_product(b%swing + swing, spin_of(b, b%swing + swing)))
-         now%potential = now%potential - b%mass * dot_product(model%gravity, b%x - model%drift * b%v - b%rest)
+         now%potential = now%potential - b%mass * dot_product(model%gravity, b%x - model%drift * b%v - b%rest) &
+            + load_potential(b, b%x - model%drift * b%v)
          now%work = now%work + b%work
       end do
       now%friction = model%lost(1) + tie_loss(model%ties)

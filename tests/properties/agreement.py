@@ -368,6 +368,27 @@ def elements_in_space_and_in_the_plane(deck: Deck, motion: Deck, within: float) 
     near("peak displacement", plane.results.peak_displacement_m, space.results.peak_displacement_m, within, 1e-2)
 
 
+@relation(
+    "dem", st.tuples(number(1.5, 3.0), number(0.4, 0.9), number(0.5, 2.0), st.sampled_from(["none", "linear", "full"])), 0.02, share=0.5
+)
+def water_in_space_and_in_the_plane(height: float, share: float, depth: float, uplift: str, within: float) -> None:
+    """Solids drawn out of a section resist water as the section does; a lighter liquid presses in the ratio of the densities."""
+    structure = {"kind": "block", "width": 1.2, "height": height, "depth": depth}
+    deck = {"structure": structure, "material": {"density": 2400.0}, "joints": {"friction": 0.9}}
+    water = {"level": share * height, "uplift": uplift}
+    plane, space, half = (
+        ask(deck, "dem", test="tilt", water={**water, "density": density}, **RIGID, **keys)
+        for density, keys in ((1000.0, {}), (1000.0, {"direction": 0.0}), (500.0, {"direction": 0.0}))
+    )
+    if plane.outcome == "cannot-stand":
+        must(space.outcome == "cannot-stand", f"in space: {space.outcome}")
+        reject()
+    ok(plane, space, half)
+    near("capacity", space.capacity, plane.capacity, within, 0.3)
+    near("force", space.results.water_force_N, plane.results.water_force_N, 1e-9)
+    near("force of half the density", [2.0 * x for x in half.results.water_force_N], space.results.water_force_N, 1e-9)
+
+
 @relation("dem", st.tuples(number(1.0, 2.0), number(0.8, 2.0), number(0.3, 2.0), st.sampled_from([1e7, 1e8])), 0.05)
 def springs_under_a_slow_push(width: float, slenderness: float, depth: float, stiffness: float, within: float) -> None:
     """A block in full contact rotates on the springs at its two corners by M/(k d b^3/4)."""

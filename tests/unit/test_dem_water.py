@@ -12,7 +12,7 @@ import extrados
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import driver
 from extrados.analyses.sequence import run_one
-from extrados.core import dem
+from extrados.core import dem, dem3
 from extrados.decks.reader import make_deck
 from extrados.limit.errors import CannotStand, NoAnswer
 from extrados.limit.loads import tilt_loads
@@ -53,15 +53,16 @@ def dam(side: float = 1.0, shift: float = 0.0) -> dict[str, Any]:
     return {"kind": "blocks", "block": [{"name": f"course {k}", "points": one[:: int(side)]} for k, one in enumerate(points)]}
 
 
+@pytest.mark.parametrize("space", [{}, {"direction": 0.0}], ids=["plane", "space"])
 @pytest.mark.parametrize("solver", ["compliant", "nonsmooth"])
 @pytest.mark.parametrize("uplift", list(UPLIFT))
 @pytest.mark.parametrize("friction", [0.9, 0.4])
-def test_a_block_stands_up_to_the_critical_level(uplift: str, friction: float, solver: str) -> None:
-    """Overturning with friction 0.9, sliding with 0.4; springs and rigid contacts; limit analysis certifies the collapse."""
+def test_a_block_stands_up_to_the_critical_level(uplift: str, friction: float, solver: str, space: dict[str, float]) -> None:
+    """Overturning with friction 0.9, sliding with 0.4; springs and rigid contacts; limit analysis certifies the collapse; a depth of 0.7 m."""
     level = critical_level(uplift, friction)
     for ratio in (0.99, 1.01):
-        there = {"kind": "block", "width": WIDTH, "height": HEIGHT}
-        found = ask(there, {"level": ratio * level, "uplift": uplift}, friction, solver=solver)
+        there = {"kind": "block", "width": WIDTH, "height": HEIGHT, "depth": 0.7}
+        found = ask(there, {"level": ratio * level, "uplift": uplift}, friction, solver=solver, **space)
         outcome = found.results.outcome if ratio < 1.0 else found.verdict.outcome
         assert outcome == ("at-rest" if ratio < 1.0 else "cannot-stand"), found
         assert any("water pressure is constant" in text for text in found.warnings)
@@ -120,6 +121,47 @@ def test_a_dam_in_its_mirror_image_and_moved_away_is_the_same() -> None:
     assert other.results.water_force_N == pytest.approx([-1000 * G * 8.0, 1000 * G * 6.0], rel=1e-5)
 
 
+@pytest.mark.parametrize("solver", ["compliant", "nonsmooth"])
+def test_a_dam_in_space_is_the_section(solver: str) -> None:
+    """A depth of 0.7 m: sliding on the base towards +x, overturning about its wet edge towards -x, as by equilibrium and in the plane."""
+    water, there = {"level": 4.0, "uplift": "linear"}, {**dam(), "depth": 0.7}
+    plane, space = (ask(there, water, test="tilt", solver=solver, **keys).results for keys in ({}, {"direction": 0.0}))
+    for one in (plane, space):
+        assert one.water_force_N == pytest.approx([700 * G * 8.0, 700 * G * 6.0], rel=1e-5)
+    for want, name in ((0.3092, "collapse_acceleration_g"), (0.6845, "collapse_acceleration_opposite_g")):
+        assert getattr(space, name) == pytest.approx(want, abs=0.003)
+        assert getattr(space, name) == pytest.approx(getattr(plane, name), abs=0.003)
+
+
+def test_a_free_body_in_space_swings_under_a_constant_couple_at_its_frequency() -> None:
+    """About each axis: omega^2 = the sums of arm times force along both other axes / inertia, and the energy balance closes."""
+    corners = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+    faces = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    extent, above = np.array([1.0, 1.4, 0.6]), np.array([0.0, 0.0, 5.0])
+    mass, period, amplitude = 1000.0, 0.5, 0.01
+    inertia = mass * ((2 * extent) ** 2).sum() / 12.0 - mass * (2 * extent) ** 2 / 12.0
+    vertices = [corners * extent + above, corners * [2.0, 2.0, 0.5]]
+    for axis in range(3):
+        load = np.zeros((2, 4, 3))
+        load[0, 1 + (axis + 1) % 3, (axis + 1) % 3] = inertia[axis] * (2 * np.pi / period) ** 2
+        solids = dem3.Solids(
+            np.array([above, np.zeros(3)]),
+            np.array([mass, 0.0]),
+            np.array([np.diag(inertia), np.eye(3)]),
+            vertices,
+            [faces, faces],
+            [0, 1],
+            [dem.Law(1e9, 1e9, 0.5)],
+            load=load,
+        )
+        rate = np.zeros((2, 6))
+        rate[0, 3 + axis] = amplitude * 2 * np.pi / period
+        run = dem3.run(solids, dem3.Options(1.0, 0.01, step=1e-3, gravity=(0.0, 0.0, 0.0), fraction=1.0), rate=rate)
+        angle = run.turn[:, 0, (axis + 2) % 3, (axis + 1) % 3]
+        assert angle == pytest.approx(amplitude * np.sin(2 * np.pi * run.time / period), abs=2e-4)
+        assert run.residual < 1e-4
+
+
 def test_a_free_body_swings_under_a_constant_couple_at_its_frequency() -> None:
     """Forces whose places rotate with the body: omega^2 = sum of arm times force / inertia, and the energy balance closes."""
     bodies = model([rectangle(-0.5, 0.5, 5.0, 6.0)], [rectangle(-2.0, 2.0, -1.0, 0.0)], dem.Law(1e9, 1e9, 0.5))
@@ -139,7 +181,13 @@ def test_a_free_body_swings_under_a_constant_couple_at_its_frequency() -> None:
     [
         ({"kind": "block", "width": 1, "height": 3}, {"level": 3.5}, {}, "give a level within"),
         ({"kind": "block", "width": 1, "height": 3}, {"level": 1e-6, "uplift": "none"}, {}, "wets no face"),
-        ({"kind": "block", "width": 1, "height": 3}, {"level": 1.0}, {"direction": 0.0}, "cannot include water"),
+        ({"kind": "block", "width": 1, "height": 3}, {"level": 3.5}, {"direction": 0.0}, "give a level within"),
+        (
+            {"kind": "column", "width": 1.0, "height": 3.0, "drums": 3, "section": "round"},
+            {"level": 1.0},
+            {"direction": 0.0},
+            "requires a plane section",
+        ),
         (
             {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 150.0, "voussoirs": 9},
             {"level": 3.0, "uplift": "linear"},

@@ -41,7 +41,8 @@ class Solids:
     centroid (n, 3) [m]; mass (n) [kg], 0 for a support; inertia (n, 3, 3) about the centroids [kg m^2]. Part k is the
     polyhedron of vertices[k] (nv, 3) [m] and faces[k], the numbers of the vertices of each face, counter-clockwise from
     outside; it belongs to body owner[k]. joints: (body, body) -> index of its law; law 0 is that of contacts that form later.
-    Mortar binds what touches at the start.
+    Mortar binds what touches at the start. load (n, 4, 3): constant force [N], then the sums of arm from the centroid times force, a row for
+    each component of the arm [N m]; it moves with the body, and keeps its direction.
     """
 
     centroid: np.ndarray
@@ -55,6 +56,7 @@ class Solids:
     dowels: Dowels | None = None
     ties: Ties | None = None
     drawn: DrawnContacts | None = None
+    load: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -129,6 +131,10 @@ class Model(BodyModel[Run]):
             self._joints = joints[:2].T
             self._put_moves(moves, _core.api_dem3.moves)
             self._put_dowels(solids.dowels)
+            if solids.load is not None:
+                own_arms = np.einsum("nik,nij->nkj", axes, solids.load[:, 1:])
+                load = np.concatenate([np.swapaxes(solids.load[:, :1], 1, 2), own_arms], axis=2)
+                check(_core.api_dem3.loads(self.handle, real("load", np.moveaxis(load, 0, -1), (3, 4, n))), "constant loads")
 
             def in_body(place: np.ndarray, body: np.ndarray) -> np.ndarray:
                 return np.asarray(np.einsum("ni,nij->nj", place - solids.centroid[body], axes[body]))

@@ -283,6 +283,7 @@ class SolidDemRun(BlocksRun):
     dowels_out: int = fact("number of dowels that came out of their holes")
     final_displacement_m: float = fact("greatest displacement of a block at the end of the run", "m")
     peak_opening_m: float = fact("greatest gap at a corner of a contact that is still closed elsewhere", "m")
+    water_force_N: list[float] = maybe("force of the water pressure on all blocks, including uplift: towards +x and upward", "N")
 
 
 class SolidDemTilt(BlocksTilt):
@@ -299,6 +300,7 @@ class SolidDemTilt(BlocksTilt):
     contacts: int = fact("number of contacts (polygons along which blocks touch)")
     opening_contacts: list[str] = fact("contacts (at most 20) that open or slide at the start of collapse; the widest comes first")
     opening_contacts_opposite: list[str] = fact("contacts that open or slide under the load in the opposite direction")
+    water_force_N: list[float] = maybe("force of the water pressure on all blocks, including uplift: towards +x and upward", "N")
 
 
 Dem = DemRun | DemTilt | SolidDemRun | SolidDemTilt

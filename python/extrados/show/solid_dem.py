@@ -145,6 +145,7 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     shift, turn, tracked = (run.array(name, key) for key in ("shift", "turn", "tracked"))
     far = np.linalg.norm(shift[:, tracked], axis=2).max(axis=0)
     order = np.argsort(-far, kind="stable")[:SHOWN]
+    loads = "self-weight and the water pressure" if r.water_force_N else "self-weight"
     names, both = list(r.peak_rotation_rad), r.horizontal_components == 2
     with style.figure(8.0, 9.0, rows=5, sharex=True, height_ratios=[2, 2, 2, 2, 1]) as (fig, axes):
         for n in order:
@@ -165,7 +166,7 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         axes[4].set_xlim(0.0, float(time.max(initial=0.0)) or 1.0)
         saved = style.save(fig, folder, f"{name}-displacements")
     return saved, (
-        "Greatest displacements and rotations of blocks, measured from equilibrium under self-weight. "
+        f"Greatest displacements and rotations of blocks, measured from equilibrium under {loads}. "
         f"The ground moves along {r.direction_deg:g} degrees in plan{(' and at right angles to it' if both else '')}."
     )
 

@@ -349,12 +349,12 @@ def support_arrays(model: Model) -> dict[str, Array]:
     }
 
 
-def water_force(model: Model) -> Keys:
+def water_force(model: Model | SolidModel) -> Keys:
     """The force of the water on all blocks [N], as a key of results; nothing without water."""
     return {} if model.water is None else {"water_force_N": model.water.force.sum(axis=0).tolist()}
 
 
-def water_arrays(model: Model) -> dict[str, Array]:
+def water_arrays(model: Model | SolidModel) -> dict[str, Array]:
     """The water pressure, for pictures; nothing without water."""
     water = model.water
     if water is None:

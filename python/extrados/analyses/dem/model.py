@@ -24,6 +24,12 @@ from extrados.views.rigid import RigidBodies
 #: Of contacts that crush
 RECOVERY = "crushed corners recover when the joint closes: the damage by crushing and its energy loss are neglected"
 
+#: Of water
+STILL_WATER = (
+    "the water pressure is constant: hydrodynamic pressure, water that enters cracks during the motion, and a change of the wet "
+    "faces are neglected. The pressure acts from the start, together with the self-weight"
+)
+
 Found = TypeVar("Found", bound=dem_run.FoundRun)
 
 
@@ -154,10 +160,7 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
     not as drawn."""
     found = [*passive_left_out(model.assembly.earth), *adjusted(model)]
     if model.water is not None:
-        found.append(
-            "the water pressure is constant: hydrodynamic pressure, water that enters cracks during the motion, and a change of the wet "
-            "faces are neglected. The pressure acts from the start, together with the self-weight"
-        )
+        found.append(STILL_WATER)
     if options.rigid:
         return found + doubts_of_rigid_mortar(model.values)
     found += doubts_of_springs(values or model.values)
@@ -176,6 +179,8 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
 def warnings_of_solids(model: SolidModel, *, springs: bool) -> list[str]:
     """What is doubtful about the joints of blocks in space."""
     found = doubts_of_springs(model.values, "contact") if springs else doubts_of_rigid_mortar(model.values, "contact")
+    if model.water is not None:
+        found.append(STILL_WATER)
     return [*found, f"{RECOVERY}. Contacts that form later, and edges that cross, do not crush"] if model.strength else found
 
 

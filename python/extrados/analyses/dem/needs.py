@@ -9,7 +9,7 @@ from extrados import room
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
 from extrados.analyses.dem.sampled import refuse_uncertain
-from extrados.analyses.dem.solid_model import refusals, refuse_shoves, refuse_stones
+from extrados.analyses.dem.solid_model import refusals, refuse_shoves, refuse_stones, wet_section
 from extrados.analyses.dem.ties import refuse_rigid_ties, section_strands
 from extrados.analyses.needs import SHARE, Need, stones_of
 from extrados.analyses.statistics.annual import hazard_curve
@@ -194,6 +194,8 @@ def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: Solid
     yield lambda: damper_strands(building)
     if not isinstance(options, tables.Dem):
         return
+    if (water := options.water) is not None:
+        yield lambda: _refuse_water(wet_section(building, stones), water)
     yield lambda: refuse_shoves(building, stones)
     yield lambda: moved_joints(stones, [one.joint for one in building.initial.movements])
     yield lambda: _refuse_long(options, len(stones.block_names), len(stones.a))

@@ -105,6 +105,7 @@ def _numbers(options: Dem, seen: SolidsSeen, collapse: Collapse) -> dict[str, An
         "dowels": len(found.dowel_slip),
         "dowel_slip_m": float(found.dowel_slip.max(initial=0.0)),
         "dowels_out": int(found.dowel_out.sum()),
+        **measures.water_force(model),
         "peak_rotation_rad": {names[i]: float(angle[i]) for i in solid_measures.followed(seen, options.track)},
         "final_displacement_m": float(apart[-1].max(initial=0.0)) if len(found.time) else 0.0,
         "peak_opening_m": float(np.where(seen.state == APART, 0.0, seen.opening).max(initial=0.0)),
@@ -116,6 +117,7 @@ def run_arrays(model: SolidModel, run: dem3.Run, shown: np.ndarray) -> dict[str,
     return {
         **scene_arrays(model.assembly),
         **segment_arrays(model.ties, 3),
+        **measures.water_arrays(model),
         "time": Array(run.time, ("time",), "s", "output times"),
         "pose": Array(
             solid_measures.poses(model, run),

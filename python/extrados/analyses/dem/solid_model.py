@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
 
 import numpy as np
 
@@ -15,26 +14,30 @@ from extrados.core import dem3, dem_run
 from extrados.core.dem_run import Law, SupportMove
 from extrados.model.errors import Key, NoView
 from extrados.model.geometry.anchors import moved_joints
+from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.geometry.solids.contacts import GROUND
+from extrados.model.geometry.water import Pressure, water_pressure
 from extrados.views.building import Building
 from extrados.views.solids.strands import damper_strands
 from extrados.views.solids.supports import LEVEL, Supports, supports_of
 
+#: Of masses and of the size: by how much blocks that are drawn out differ from their section
+DRAWN_OUT = 1e-6
 FACING = -0.3  # cosine between faces of a stone that look away from each other
 
 
 @dataclass(frozen=True)
 class SolidModel:
     """Blocks in space with what they stand on. Bodies 0..count-1 are the blocks, the rest supports. strength: at which contacts crush, 0
-    never [Pa]."""
+    never [Pa]; water: its pressure on the section that is drawn out."""
 
     assembly: SolidAssembly
     supports: Supports
     values: ContactValues
     ties: ElementTies = NO_TIES
     strength: float = 0.0
-    other_loads: ClassVar[str] = ""
+    water: Pressure | None = None
 
     @property
     def count(self) -> int:
@@ -45,6 +48,16 @@ class SolidModel:
     def mass(self) -> np.ndarray:
         """Masses of the mobile bodies [kg]."""
         return self.assembly.mass
+
+    @property
+    def load(self) -> np.ndarray | None:
+        """Constant loads of the mobile bodies (count, 4, 3) [N, N m], as core.dem3.Solids has them."""
+        return None if self.water is None else self.water.on_solids(self.assembly.centroid)
+
+    @property
+    def other_loads(self) -> str:
+        """Constant loads besides the own weight, in words."""
+        return "" if self.water is None else "the water pressure"
 
     @property
     def size(self) -> float:
@@ -101,6 +114,7 @@ class SolidModel:
             joints,
             self._dowels(),
             self.ties.core,
+            load=None if self.load is None else np.concatenate([self.load, np.zeros((count, 4, 3))]),
         )
 
     def drawn(self) -> dem_run.DrawnContacts:
@@ -139,7 +153,9 @@ def make_solid_model(building: Building, options: SpatialDem) -> SolidModel:
     assembly = building.solids()
     ties = element_ties(building, (*building.strands(), *damper_strands(building)), np.arange(len(assembly.mass)), options.has_rates)
     strength = building.material.compressive_strength if options.crushing else None
-    return SolidModel(assembly, supports_of(assembly, options.floor), solid_values(building, assembly), ties, strength or 0.0)
+    asked = options.water if isinstance(options, Dem) else None
+    water = None if asked is None else water_pressure(wet_section(building, assembly), asked.level, asked.side, asked.uplift, asked.density)
+    return SolidModel(assembly, supports_of(assembly, options.floor), solid_values(building, assembly), ties, strength or 0.0, water)
 
 
 def moves_of(building: Building, model: SolidModel) -> tuple[SupportMove, ...]:
@@ -178,7 +194,6 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         asked += [
             ('base = "moving"', options.base == "moving", ("analysis", "base")),
             ("find_friction", options.find_friction, ("analysis", "find_friction")),
-            ("water", options.water is not None, ("analysis", "water")),
         ]
     if isinstance(options, DemDomain):
         asked.append(("mode_II", options.mode_II, ("analysis", "mode_II")))
@@ -188,6 +203,25 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
             ('damping = "restitution"', joints.damping == "restitution" and joints.beta is None, ("joints", "damping")),
         ]
     return [(f"dem of solids cannot include {what}: remove it", key) for what, there, key in asked if there]
+
+
+def wet_section(building: Building, assembly: SolidAssembly) -> Assembly:
+    """The plane section of which the blocks in space are drawn out; Refused where they are not."""
+    try:
+        section = building.blocks()
+    except NoView:
+        section = None
+    if (
+        section is None
+        or section.block_names != assembly.block_names
+        or not np.allclose(section.mass, assembly.mass, rtol=DRAWN_OUT)
+        or not np.allclose(section.centroid, assembly.centroid[:, [0, 2]], rtol=0.0, atol=DRAWN_OUT * assembly.size)
+    ):
+        raise Refused(
+            "for solids, `water` requires a plane section that is drawn out to its depth: remove `water`, or draw the section",
+            ("analysis", "water"),
+        )
+    return section
 
 
 def refuse_shoves(building: Building, assembly: SolidAssembly) -> None:

@@ -36,6 +36,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
         load_direction_deg=options.direction or 0.0,
         blocks=model.count,
         contacts=len(model.assembly.a),
+        **measures.water_force(model),
         opening_contacts=_openings(model, last),
         opening_contacts_opposite=_openings(model, back_run),
         interval=len(model.assembly.a) > model.count

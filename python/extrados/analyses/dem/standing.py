@@ -50,9 +50,8 @@ def compared(context: Context, rigid: bool, model: Model | SolidModel, find: Cal
     """What elements find, with what other methods find under the own weight. Where the elements collapse: CannotStand where
     limit analysis of the same blocks proves it, else Refused."""
     alone, doubt, warning = left_out(model), "", ""
-    proof_of: Callable[[Building], CannotStand | None] = partial(proof_of_solids, strength=model.strength or None)
-    if isinstance(model, Model):
-        proof_of = partial(proof_of_section, strength=model.strength or None, water=model.water)
+    of_kind = proof_of_section if isinstance(model, Model) else proof_of_solids
+    proof_of: Callable[[Building], CannotStand | None] = partial(of_kind, strength=model.strength or None, water=model.water)
     try:
         with interruptible():  # Ctrl-C between two runs stops the next one
             if rigid and not alone:  # first: Ctrl-C here loses nothing
@@ -138,18 +137,26 @@ def proof_of_section(building: Building, strength: float | None = None, water: P
         raise NoAnswer(str(error)) from None
 
 
-def proof_of_solids(building: Building, strength: float | None = None) -> CannotStand | None:
+def proof_of_solids(building: Building, strength: float | None = None, water: Pressure | None = None) -> CannotStand | None:
     """The same of blocks in space; None where no motion proves collapse."""
     assembly = building.solids()
     friction = building.friction(assembly)
-    dry = strength is None
-    found = (SolidLimit(assembly, friction) if dry else CrushingLimit(assembly, friction, np.full(len(assembly.a), strength))).falls()
+    resting = None
+    if water is not None:
+        load = water.on_solids(assembly.centroid)
+        arm = load[:, 1:]
+        resting = np.concatenate([load[:, 0], np.stack([arm[:, i, j] - arm[:, j, i] for i, j in ((1, 2), (2, 0), (0, 1))], axis=1)], axis=1)
+    found = (
+        SolidLimit(assembly, friction, resting=resting)
+        if strength is None
+        else CrushingLimit(assembly, friction, np.full(len(assembly.a), strength), resting=resting)
+    ).falls()
     if found is None:
         return None
     name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
     return CannotStand(
         f"{name} cannot be in equilibrium; certificate: a mechanism, fastest at {name}, in which no "
-        "contact resists and the weights do positive work"
+        f"contact resists and the weights{' and the water pressure' if water is not None else ''} do positive work"
     )
 
 

@@ -227,8 +227,8 @@ class Dem(SpatialDem, Animated):
     )
     water: Water | None = key(
         None,
-        "water on one side of a plane section. Its forces are calculated for the structure at rest; their directions and values do not "
-        "change as blocks move",
+        "water on one side of a plane section, also if this section is drawn out to solids. Its forces are calculated for the structure at "
+        "rest; their directions and values do not change as blocks move",
     )
     track: list[str] = key([], "names of the blocks whose rotation is recorded; default: all, at most 24", max_length=200)
     snapshot_times: list[Time] = key([], "times at which the structure is drawn; default: six characteristic times", max_length=24)

@@ -79,7 +79,7 @@ def supports_answer(far: float, lift: float, weight: float, work: float | None) 
     return f"{told}."
 
 
-def _wet(r: DemRun | DemTilt) -> str:
+def _wet(r: DemRun | DemTilt | SolidDemRun | SolidDemTilt) -> str:
     """The force of the water, if any."""
     if not r.water_force_N:
         return ""
@@ -92,11 +92,16 @@ def _wet(r: DemRun | DemTilt) -> str:
     return f" Water presses on the blocks with {' and '.join(parts)}."
 
 
+def _idle(r: DemRun | SolidDemRun) -> str:
+    """The answer of a run without a motion that stays at rest."""
+    loads = loads_at_rest("the water pressure" if r.water_force_N else None)
+    return f"The structure stands under {loads}. No motion acts on it.{_wet(r)}"
+
+
 def motion_answer(r: DemRun, idle: bool) -> str:
     """The answer of a run under a motion; idle: nothing moves the ground."""
     if idle and r.outcome == "at-rest":
-        loads = loads_at_rest("the water pressure" if r.water_force_N else None)
-        return f"The structure stands under {loads}. No motion acts on it.{_wet(r)}"
+        return _idle(r)
     turn = max(r.peak_rotation_rad.items(), key=lambda item: abs(item[1]), default=("", 0.0))
     first, audit = _fate(r, "joint"), _audit(r)
     return f"{first}; {_moved(turn[0], abs(turn[1]), r.peak_slip_m)}, {r.bounces} bounces; {audit}.{_tied(r.ties)}{_wet(r)}"
@@ -121,7 +126,7 @@ def tilt_answer(r: DemTilt) -> str:
 def solid_answer(r: SolidDemRun, idle: bool) -> str:
     """The answer of a run in space; idle: nothing moves the ground."""
     if idle and r.outcome == "at-rest":
-        return "The structure stands under its own weight. No motion acts on it."
+        return _idle(r)
     turn = max(r.peak_rotation_rad.items(), key=lambda item: item[1], default=("", 0.0))
     first, audit = _fate(r, "contact"), _audit(r)
     if r.outcome == "rocked":
@@ -129,7 +134,7 @@ def solid_answer(r: SolidDemRun, idle: bool) -> str:
     if r.dowels:
         gave = f"slipped by up to {1e3 * r.dowel_slip_m:.2g} mm" if r.dowel_slip_m > 0.0 else "held"
         first += f"; dowels {gave}" + (f", {r.dowels_out} of {r.dowels} came out" if r.dowels_out else "")
-    return f"{first}; {_moved(turn[0], turn[1], r.peak_slip_m)}, {r.bounces} bounces; {r.blocks} blocks, {r.contacts} contacts; {audit}.{_tied(r.ties)}"
+    return f"{first}; {_moved(turn[0], turn[1], r.peak_slip_m)}, {r.bounces} bounces; {r.blocks} blocks, {r.contacts} contacts; {audit}.{_tied(r.ties)}{_wet(r)}"
 
 
 def solid_tilt_answer(r: SolidDemTilt) -> str:
@@ -140,7 +145,7 @@ def solid_tilt_answer(r: SolidDemTilt) -> str:
         (
             f"Collapse under a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} "
             f"degrees in plan (a tilt of {r.tilt_angle_deg:.2f} deg), and of {r.collapse_acceleration_opposite_g:.4f} g in the opposite "
-            f"direction. The lower value is {least:.4f} g. Contacts that open or slide at collapse: {where}.{_tied(r.ties)}"
+            f"direction. The lower value is {least:.4f} g. Contacts that open or slide at collapse: {where}.{_tied(r.ties)}{_wet(r)}"
         )
         + (f" {ONE_PATH}" if r.interval else "")
         + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")

@@ -61,7 +61,9 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
     one_depth = depths[0] if np.ptp(depths) < 1e-6 * max(depths) else None
     notes = [f"{name}: {len(blocks)} blocks and {len(ground)} supports, section across {AXES[axis]}"]
     if other := [AXES[a] for a in across[1:] if a != 2 and lowest[a] < highest[a]]:
-        notes.append(f"{name}: the blocks are prisms along {other[0]} too. To use the section across {other[0]}, exchange x and y in the file")
+        notes.append(
+            f"{name}: the blocks are prisms along {other[0]} too. To use the section across {other[0]}, exchange x and y in the file"
+        )
     if one_depth is None:
         notes.append(
             f"{name}: the blocks have depths of {min(depths):.4g} to {max(depths):.4g} m across the section; the value of "

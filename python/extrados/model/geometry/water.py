@@ -46,6 +46,15 @@ class Pressure:
         np.add.at(found, body, np.column_stack([self.force, _moment(arm, self.force), (arm * self.force).sum(axis=1)]))
         return found
 
+    def on_solids(self, centroid: np.ndarray) -> np.ndarray:
+        """Constant loads (blocks, 4, 3) of blocks drawn out along y, as core.dem3.Solids has them; centroid (blocks, 3) [m]."""
+        force = np.insert(self.force, 1, 0.0, axis=1)
+        # by symmetry the resultant acts at half the depth
+        arm = np.insert(self.point - centroid[self.block][:, [0, 2]], 1, 0.0, axis=1)
+        found = np.zeros((len(centroid), 4, 3))
+        np.add.at(found, self.block, np.concatenate([force[:, None], arm[:, :, None] * force[:, None]], axis=1))
+        return found
+
 
 @dataclass(frozen=True)
 class _Outlines:
