@@ -178,7 +178,7 @@ def test_keys_of_the_plane_are_refused_in_space() -> None:
     assert "sweep of solids cannot include fracture" in str(
         run(DOME, kind="sweep", vary="thickness", start=0.4, stop=0.5, fracture=True).reason
     )
-    assert "is only for blocks in space" in str(run(ARCH, kind="thrust", section=[{"name": "a", "x": 0.0}]).reason)
+    assert "applies only to analyses of blocks in space" in str(run(ARCH, kind="thrust", section=[{"name": "a", "x": 0.0}]).reason)
 
 
 def test_a_sweep_of_an_extruded_arch_is_that_of_its_section() -> None:

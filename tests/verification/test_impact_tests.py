@@ -131,7 +131,8 @@ def test_harmonic_tests_of_arch_1_in_discrete_elements() -> None:
         found.append(reached(float(run.array("dem", "time")[-1])))
     print(f"elements: {np.round(found, 2)} g")
     assert found[:2] == pytest.approx([0.27, 0.28], abs=0.02)
-    assert 0.35 < found[2] < 0.45 < found[3] < found[4] < 1.1
+    # chaotic from 6 Hz on: peaks that differ by 1e-5 give .35 to .49, .61 to .70 and .77 to .97 g
+    assert 0.3 < found[2] < 0.55 < found[3] < 0.75 < found[4] < 1.1
 
 
 @pytest.mark.verify
@@ -150,10 +151,10 @@ def test_harmonic_tests_of_arch_1_by_each_rule() -> None:
     assert found["thesis"][2] < 1.2 * 0.27 and np.isfinite(found["thesis"]).all() and found["thesis"].max() < 0.7
 
 
-#: Factors on Eq. 5.5 between which discrete elements begin to fall, by arch and period [s]
+#: Factors on Eq. 5.5 between which discrete elements begin to fall, by arch and period [s]; of Arch2 at .08 s outcomes alternate between
 ELEMENTS = {
     "Arch1": {0.08: (1.2, 1.35), 0.10: (1.2, 1.35), 0.12: (1.2, 1.35), 0.15: (1.0, 1.1), 0.20: (1.0, 1.1), 0.30: (1.0, 1.1)},
-    "Arch2": {0.08: (1.5, 1.7), 0.10: (1.0, 1.1), 0.12: (1.1, 1.2), 0.15: (0.9, 1.0), 0.20: (0.9, 1.0), 0.30: (1.0, 1.1)},
+    "Arch2": {0.08: (1.4, 1.8), 0.10: (1.0, 1.1), 0.12: (1.1, 1.2), 0.15: (0.9, 1.0), 0.20: (0.9, 1.0), 0.30: (1.0, 1.1)},
 }
 
 

@@ -226,7 +226,7 @@ class Generated(Motion):
     mmi: float = key(about="modified Mercalli intensity", ge=1, le=12)
     duration: Time = key(about="duration t_d of the motion, without `lead` and `tail`", gt=0, le=600, source="thesis Eq. 6.7")
     seed: int = key(1, "seed of the random numbers: the same seed gives the same set", ge=-(2**62), le=2**62)
-    member: int = key(1, "number (from 1), in the set, of the motion that a single run uses", ge=1, le=2**31)
+    member: int = key(1, "number of the motion of the set that a single run uses, counted from 1", ge=1, le=2**31)
     spectrum: str = key(
         "boore-worden",
         "Fourier spectra by intensity: `boore-worden`, or a CSV file with the columns mmi,frequency_Hz,amplitude_cm_s",
@@ -302,7 +302,7 @@ class Compatible(TargetSpectrum, Motion):
     rise: Time | None = key(None, "time until the full amplitude", gt=0)
     decay: Time | None = key(None, "duration of the decay of the envelope, as for `generated` motions", gt=0)
     seed: int = key(1, "seed of the random numbers: the same seed gives the same set", ge=-(2**62), le=2**62)
-    member: int = key(1, "number (from 1), in the set, of the motion that a single run uses", ge=1, le=2**31)
+    member: int = key(1, "number of the motion of the set that a single run uses, counted from 1", ge=1, le=2**31)
     time_step: Time = key(0.01, "sampling step", ge=1e-3, le=0.05)
 
     @model_validator(mode="after")

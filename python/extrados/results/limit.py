@@ -205,7 +205,7 @@ class Tilt(KindResults):
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires at collapse")
     required_friction_joint: int = fact("joint with the greatest required friction")
     geometric_safety_factor: float | None = fact(
-        "geometric safety factor without tilt: 1 divided by the least central part of the joints that "
+        "geometric safety factor without tilt: 1 divided by the smallest central part of the joints that "
         "contains a thrust line (found within 0.001), at most 100. Null if not requested, or if a "
         "thrust line passes through the middle 1 % of all joints (no horizontal demand)"
     )
@@ -403,10 +403,10 @@ class Thrust(KindResults):
     chain: str | None = fact("arch or column of blocks whose minimum and maximum thrust are given; null if there is none")
     admissible_interval_g: list[float] = fact("accelerations between which an admissible thrust line exists", "g")
     geometric_safety_factor: float | None = fact(
-        "geometric safety factor: 1 divided by the least central part of the joints that contains a thrust line (found within 0.001), "
+        "geometric safety factor: 1 divided by the smallest central part of the joints that contains a thrust line (found within 0.001), "
         "at most 100. Null if not requested, or if a thrust line passes through the middle 1 % of all joints (no horizontal demand)"
     )
-    least_part_of_joints: float = maybe("least central part of the joints that contains a thrust line (found within 0.001)")
+    least_part_of_joints: float = maybe("smallest central part of the joints that contains a thrust line (found within 0.001)")
     weight_N: float = fact("weight of the structure, with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
     dilating: bool = fact(

@@ -30,7 +30,7 @@ class ThrustNetwork(KindResults):
         "upper bound of `greatest_thrust_N` for all networks on this form diagram; null if the thrust has no limit", "N"
     )
     central_thrust_N: float = fact("sum of the outward thrusts at all supports in the most central network", "N")
-    least_part_of_depth: float = fact("least central part of the vertical depth within which a network was found")
+    least_part_of_depth: float = fact("smallest central part of the vertical depth within which a network was found")
     least_part_bound: float | None = fact(
         "central part of the vertical depth within which no network on this form diagram exists; null without a bound"
     )

@@ -193,11 +193,11 @@ class SolidThrust(KindResults):
     admissible_interval_g: list[float] = fact("accelerations along the load direction between which an admissible state exists", "g")
     sections: list[SectionThrust] = fact("thrust of each section")
     geometric_safety_factor: float | None = fact(
-        "geometric safety factor: 1 divided by the least central part of the contacts in which an equilibrium state exists; null if "
+        "geometric safety factor: 1 divided by the smallest central part of the contacts in which an equilibrium state exists; null if "
         "this part is below 1 % (no horizontal demand), or if it was not found"
     )
     least_part_of_joints: float | None = fact(
-        "least central part of the contacts in which an equilibrium state exists (the most central state)"
+        "smallest central part of the contacts in which an equilibrium state exists (the most central state)"
     )
     required_friction: float | None = fact("greatest coefficient of friction that the most central state needs")
     required_friction_contact: str | None = fact("contact with the greatest required friction")

@@ -55,7 +55,7 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
         return reason(
             "static-peak",
             mine,
-            f"{text}. A constant horizontal acceleration of that peak must act for {needed:.3g} s to cause collapse.",
+            f"{text}. A constant horizontal acceleration equal to that peak must act for {needed:.3g} s to cause collapse.",
             **numbers,
         )
     if needed is not None:

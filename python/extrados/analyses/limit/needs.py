@@ -68,8 +68,8 @@ def _needs_of_many(context: Context, options: BuildingAnalysis) -> Iterator[Need
 
 def _refuse_sections() -> None:
     raise Refused(
-        "the key `section` is only for blocks in space: give `direction` to analyse the blocks in space, "
-        "or the key `chain` for the plane section",
+        "the key `section` applies only to analyses of blocks in space: give `direction` too. To analyse the plane section, give the key "
+        "`chain` instead",
         ("analysis", "section"),
     )
 
