@@ -322,7 +322,7 @@ def test_bad_joints_are_refused() -> None:
         ({"cohesion": 1e5}, "no `shear_energy`"),
         ({"tension": 1e5}, "no `fracture_energy`"),
         ({"compressive_strength": 1e6}, "require each other"),
-        ({"cohesion": 1e6, "shear_energy": 1e-3, "normal_stiffness": 1e9}, "snaps back"),
+        ({"cohesion": 1e6, "shear_energy": 1e-3, "normal_stiffness": 1e9}, "snap back"),
     ):
         data = {"structure": arch, "joints": joints, "analysis": {"kind": "sla"}}
         assert word in run_analyses(Context(make_deck(data)))[0].reason

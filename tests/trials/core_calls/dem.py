@@ -138,8 +138,9 @@ def solids(
     pair,
     ends,
     normal,
+    load,
 ) -> Any:
-    """A cube on a support in space, shaken, with a tie; on springs with a dowel."""
+    """A cube on a support in space, shaken, with a tie and a constant load; on springs with a dowel."""
     dowels = None if rigid else dem3.Dowels(doweled, place, axis, stiffness, strength, reach, 1e-3)
     tied = dem_run.Ties(stretched, np.zeros_like(stretched), -bounds, bounds, first, closed, anchored, point, spot)
     bodies = dem3.Solids(
@@ -154,6 +155,7 @@ def solids(
         dowels,
         tied,
         drawn=dem_run.DrawnContacts(pair, [ends], normal),
+        load=load,
     )
     options = dem3.Options(
         end_time,
@@ -273,6 +275,7 @@ def calls() -> Calls:
                     pair=np.array([[0, 1]]),
                     ends=CUBE[:4],
                     normal=np.array([[0.0, 0.0, 1.0]]),
+                    load=np.stack([np.full((4, 3), 10.0), np.zeros((4, 3))]),
                 ),
             )
             for rigid in (False, True)
