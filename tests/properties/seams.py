@@ -126,7 +126,7 @@ def stones_of_contacts_in_plane_and_space(deck: Deck, young: float, within: floa
     "tilt", st.tuples(number(0.1, 0.6), st.lists(st.tuples(number(0.2, 0.8), number(0.4, 1.2)), min_size=1, max_size=3), st.data()), 1e-9
 )
 def lintels_in_a_mirror(bearing: float, row: list, data: st.DataObject, within: float) -> None:
-    """Lintels of a wall in a mirror are those of the wall, mirrored; each bears on both sides and none on another."""
+    """Lintels of a mirrored wall are the mirrored lintels of the wall. Each has a bearing on both sides, and no two overlap."""
     at, holes, heads = 0.0, [], []
     for pier, wide in row:
         head = data.draw(st.sampled_from([1.6, 2.0, 2.4]))
@@ -152,8 +152,8 @@ BODY = ("mass", "inertia", "centre_height", "toe_right", "toe_left")
 @relation(
     "rocking", st.tuples(st.lists(number(0.1, 3.0), min_size=5, max_size=5), st.sampled_from(BODY), st.sampled_from([0.0, -0.2])), 0.0
 )
-def bodies_that_are_none(values: list, name: str, wrong: float, within: float) -> None:
-    """A body without mass, inertia, height or a toe is refused; of all others the numbers are those given."""
+def bodies_without_mass_or_size(values: list, name: str, wrong: float, within: float) -> None:
+    """A body without mass, inertia, height or a toe is refused. Other bodies have the given values."""
     keys = dict(zip(BODY, values, strict=True))
     made = make_block(**keys)
     near("mass", made.mass, [keys["mass"]], 1e-12)
@@ -173,7 +173,7 @@ LOPSIDED = st.fixed_dictionaries(
 
 @relation("rocking", st.tuples(LOPSIDED, st.sampled_from(["left", "right"]), number(0.2, 0.8)), 1e-9)
 def lopsided_blocks_beside_a_wall(shape: Deck, side: str, rebound: float, within: float) -> None:
-    """Beside a wall a block starts to rock at the slope of its toe to the free side, and never turns into the wall."""
+    """Beside an abutting wall a block starts to rock at the ratio of its free toe to the height of its centre, and never rotates into the wall."""
     deck = {"structure": shape, "supports": {"abutting_wall": side, "rebound": rebound}}
     free = {"left": "toe_right", "right": "toe_left"}[side]
     slope = shape[free] / shape["centre_height"]
@@ -189,7 +189,8 @@ def lopsided_blocks_beside_a_wall(shape: Deck, side: str, rebound: float, within
 
 @relation("rocking", st.tuples(decks("stack", friction=st.just("no-sliding")), st.sampled_from([0.5, 1.2, 8.0])), 1e-9)
 def stacks_by_their_slopes(deck: Deck, factor: float, within: float) -> None:
-    """A stack starts to rock at the slope of its foot below the centre of both blocks, the upper one at that of its own; the words tell how it ended."""
+    """A stack starts to rock at the half width of its foot over the height of the common centre, the upper block at its own width over height; the
+    answer states the outcome."""
     shape = deck["structure"]
     low, high = (np.array([shape[f"{name}_{side}"] for name in ("lower", "upper")]) for side in ("width", "height"))
     masses, middles = low * high, np.array([0.5 * high[0], high[0] + 0.5 * high[1]])
@@ -205,8 +206,9 @@ def stacks_by_their_slopes(deck: Deck, factor: float, within: float) -> None:
 
 
 @relation("rocking", st.tuples(decks("block", "column"), number(8.0, 10.0)), 1e-9, share=0.5)
-def soft_bases_are_asked_where_they_are_given(deck: Deck, exponent: float, within: float) -> None:
-    """A block on a compliant base rocks as one with two coordinates where this is asked for, else on rigid ground; stiffer bases come near it."""
+def compliant_bases_apply_if_requested(deck: Deck, exponent: float, within: float) -> None:
+    """A block on a compliant base has two coordinates if the analysis requests the base, otherwise it rocks on rigid ground. Stiff bases
+    agree with rigid ground."""
     soft = changed(deck, supports={"stiffness": 10.0**exponent, "damping_ratio": 0.05})
     rigid = building(deck).rocker()
     made = building(soft).rocker(soft_base=True)
@@ -220,7 +222,7 @@ def soft_bases_are_asked_where_they_are_given(deck: Deck, exponent: float, withi
 
 @relation("dem", st.tuples(decks("block", "column", "arch", "frame"), number(0.0, 0.5)), 1e-9)
 def floors_below_what_stands(deck: Deck, below: float, within: float) -> None:
-    """A floor reaches up to its level, goes round counter-clockwise, and lies under the whole building."""
+    """The outline of a floor ends at its level, is counter-clockwise, and extends below the whole building."""
     stones = building(deck).blocks()
     points = np.concatenate(stones.outlines)
     level = float(points[:, 1].min()) - below
@@ -232,19 +234,19 @@ def floors_below_what_stands(deck: Deck, below: float, within: float) -> None:
     must(bool(floors), "no floor")
     for polygon in map(np.asarray, floors):
         near("level", polygon[:, 1].max(), level, within, extent)
-        must(signed_area(polygon) > 0.0, "a floor that goes round clockwise")
+        must(signed_area(polygon) > 0.0, "a clockwise floor")
         at_most("depth of the ground", 0.1 * extent, level - polygon[:, 1].min(), 0.0)
 
 
 @relation("dem", number(0.01, 100.0), 1e-12)
 def times_to_settle(size: float, within: float) -> None:
-    """What comes to rest is waited for 15 times the time in which a body of its size swings or falls, sqrt(size/g)."""
+    """The time to settle is 15 sqrt(size/g), 15 times the time scale of a body of this size."""
     near("time", dem_model.settle_time(SimpleNamespace(size=size)), 15.0 * np.sqrt(size / GRAVITY), within)
 
 
 @relation("dem", st.tuples(st.integers(1, 5), st.integers(1, 12), st.integers(0, 10**6)), 0.0)
 def changes_of_hinges(joints: int, steps: int, seed: int, within: float) -> None:
-    """The table of hinges has each change of the state of a joint, in words that name what is open, closed, or hinged at an end."""
+    """The table of hinges lists each change of the state of a joint: open, closed, or hinged at its first or second end."""
     kinds = [states.CLOSED, states.HINGED_FIRST, states.HINGED_SECOND, states.APART]
     told = {states.CLOSED: "closed", states.APART: "open", states.HINGED_FIRST: "first", states.HINGED_SECOND: "second"}
     state = np.random.default_rng(seed).choice(kinds, size=(steps, joints))
@@ -263,7 +265,7 @@ def changes_of_hinges(joints: int, steps: int, seed: int, within: float) -> None
 
 @relation("moving-load supports tilt", st.tuples(decks("arch"), number(1e2, 1e4)), 1e-6)
 def forces_of_ties_in_their_arrays(deck: Deck, force: float, within: float) -> None:
-    """Under a moving load and a push the array of tie forces at collapse has the forces of the results; under moving supports the settled ones."""
+    """The array of tie forces at collapse (moving load, tilt) or after settlement of supports equals the forces of the results."""
     deck = changed(deck, joints={"friction": 0.8}, structure={"voussoirs": 6})
     stones = building(deck).blocks()
     x, y = (round(float(v), 6) for v in stones.centroid[2])
@@ -314,7 +316,7 @@ def work_of_blocks_and_of_links(deck: Deck, within: float) -> None:
 
 @relation("local-mechanism", decks("block", "frame", "column", friction=number(0.1, 0.2, 4)), 0.0)
 def multipliers_whose_least_state_is_unknown(deck: Deck, within: float) -> None:
-    """Where joints slide and no state without dilatancy is found, the multiplier is an upper bound: no check is satisfied by it."""
+    """If joints slide and no state without dilatancy is found, the multiplier is an upper bound."""
     deck = changed(deck, structure={"height": 1.0}) if deck["structure"]["kind"] == "block" else deck
     made = make_deck({**deck, "analysis": [{"kind": "local-mechanism", "mechanism": "building"}]})
     with mock.patch.object(local_mechanism, "_without_dilatancy", side_effect=NoAnswer("none is known")):

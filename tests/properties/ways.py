@@ -225,6 +225,13 @@ def moved_model(text: str, shift: list[float], turn: int, skew: float, noise: fl
     return json.dumps(data)
 
 
+#: A wall whose stones are prisms along every axis
+CUBOIDS: Deck = {
+    "structure": {"kind": "brickwork", "unit_length": 0.3, "unit_height": 0.15, "units": 2, "courses": 2},
+    "joints": {"friction": 0.6},
+}
+
+
 @relation(
     "tilt",
     st.tuples(
@@ -235,6 +242,7 @@ def moved_model(text: str, shift: list[float], turn: int, skew: float, noise: fl
     ),
     1e-4,
     share=0.5,
+    examples=[(CUBOIDS, (0.0, 0.0, 0.0), 1, 0.05)],
 )
 def models_anywhere(deck: Deck, shift: tuple, turn: int, skew: float, within: float) -> None:
     """A model of COMPAS at any place, across x or y, is the same section; a block that is no prism is refused by its name. Cuboids above
