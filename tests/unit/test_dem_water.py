@@ -11,6 +11,7 @@ from dem_models import G, model, rectangle
 import extrados
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import driver
+from extrados.analyses.dem.solid_model import wet_section
 from extrados.analyses.sequence import run_one
 from extrados.core import dem, dem3
 from extrados.decks.reader import make_deck
@@ -221,3 +222,15 @@ def test_an_end_without_a_result_keeps_the_warnings(error: Exception, monkeypatc
     )
     found = run_one(Context(there), there.analyses[0], there.building)
     assert sum("water pressure is constant" in text for text in found.warnings) == 1
+
+
+def test_blocks_beside_each_other_in_depth_are_no_section_drawn_out() -> None:
+    """A block that is moved along its depth has the same section, but not the same joints under water."""
+    made = make_deck(
+        {"structure": {"kind": "column", "width": 1.0, "height": 3.0, "depth": 2.0, "drums": 2}, "analysis": [{"kind": "tilt"}]}
+    ).building
+    solids = made.solids()
+    assert wet_section(made, solids).block_names == solids.block_names
+    parts = [replace(p, vertices=[*p.vertices, 0.0, 0.8, 0.0]) if o == 1 else p for p, o in zip(solids.parts, solids.owner, strict=True)]
+    with pytest.raises(Refused, match="drawn out to its depth"):
+        wet_section(made, replace(solids, parts=parts))

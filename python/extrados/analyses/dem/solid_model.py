@@ -216,12 +216,34 @@ def wet_section(building: Building, assembly: SolidAssembly) -> Assembly:
         or section.block_names != assembly.block_names
         or not np.allclose(section.mass, assembly.mass, rtol=DRAWN_OUT)
         or not np.allclose(section.centroid, assembly.centroid[:, [0, 2]], rtol=0.0, atol=DRAWN_OUT * assembly.size)
+        or not _fills_depth(section, assembly)
     ):
         raise Refused(
             "for solids, `water` requires a plane section that is drawn out to its depth: remove `water`, or draw the section",
             ("analysis", "water"),
         )
     return section
+
+
+def _fills_depth(section: Assembly, assembly: SolidAssembly) -> bool:
+    """Whether all blocks in space reach from one end of one depth to the other, and have the extents of their outlines."""
+    error = DRAWN_OUT * assembly.size
+    low, high = (
+        np.array(
+            [
+                edge([edge(p.vertices, axis=0) for p, o in zip(assembly.parts, assembly.owner, strict=True) if o == k], axis=0)
+                for k in range(len(assembly.mass))
+            ]
+        )
+        for edge in (np.min, np.max)
+    )
+    flat = np.array([[outline.min(axis=0), outline.max(axis=0)] for outline in section.outlines])
+    return bool(
+        np.ptp(low[:, 1]) < error
+        and np.ptp(high[:, 1]) < error
+        and np.abs(low[:, [0, 2]] - flat[:, 0]).max() < error
+        and np.abs(high[:, [0, 2]] - flat[:, 1]).max() < error
+    )
 
 
 def refuse_shoves(building: Building, assembly: SolidAssembly) -> None:
