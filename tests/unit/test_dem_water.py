@@ -231,6 +231,9 @@ def test_blocks_beside_each_other_in_depth_are_no_section_drawn_out() -> None:
     ).building
     solids = made.solids()
     assert wet_section(made, solids).block_names == solids.block_names
-    parts = [replace(p, vertices=[*p.vertices, 0.0, 0.8, 0.0]) if o == 1 else p for p, o in zip(solids.parts, solids.owner, strict=True)]
+    parts = [
+        replace(p, vertices=p.vertices + np.array([0.0, 0.8, 0.0])) if o == 1 else p
+        for p, o in zip(solids.parts, solids.owner, strict=True)
+    ]
     with pytest.raises(Refused, match="drawn out to its depth"):
         wet_section(made, replace(solids, parts=parts))
